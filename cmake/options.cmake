@@ -1,0 +1,41 @@
+# Build options and the one function that makes a grainlaw library.
+option(GRAINLAW_DEM "Build the DEM engine (needs HDF5)" ON)
+option(GRAINLAW_MODEL "Build the constitutive model (needs SUNDIALS, Eigen)" ON)
+option(GRAINLAW_CALIBRATE "Build the calibration (needs Ceres, the DEM and the model)" ON)
+option(GRAINLAW_APPS "Build the program grainlaw (needs CLI11, spdlog)" ON)
+option(GRAINLAW_TESTS "Build the tests (needs GoogleTest)" ON)
+option(GRAINLAW_SANITIZE "AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
+option(GRAINLAW_WERROR "Warnings are errors" OFF)
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+# Headers are included as <grainlaw/room/file.hpp>, from the source tree as from an installation.
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/grainlaw SYMBOLIC)
+
+add_library(grainlaw_warnings INTERFACE)
+target_compile_options(grainlaw_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                       -Wold-style-cast -Woverloaded-virtual $<$<BOOL:${GRAINLAW_WERROR}>:-Werror>)
+if(GRAINLAW_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+# grainlaw_library(room): the sources of this folder as grainlaw::room.
+function(grainlaw_library room)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  add_library(grainlaw_${room} STATIC ${sources})
+  add_library(grainlaw::${room} ALIAS grainlaw_${room})
+  set_target_properties(grainlaw_${room} PROPERTIES EXPORT_NAME ${room})
+  target_include_directories(grainlaw_${room} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+                                                     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(grainlaw_${room} PUBLIC cxx_std_20)
+  target_link_libraries(grainlaw_${room} PRIVATE $<BUILD_INTERFACE:grainlaw_warnings>)
+endfunction()
