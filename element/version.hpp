@@ -1,0 +1,14 @@
+// Which grainlaw this is: the version of the project and the commit it was built from.
+#pragma once
+
+#include <string>
+
+namespace grainlaw {
+
+/// "0.1.0"
+std::string version();
+/// Short hash of the commit, with "-dirty" where files under version control had been changed; "unknown"
+/// without git.
+std::string commit();
+
+}  // namespace grainlaw
