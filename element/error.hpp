@@ -7,7 +7,8 @@
 namespace grainlaw {
 
 /// Thrown by every library for input that cannot be used or a file that cannot be read or written.
-/// what() reads "scene.json: material.w: must be >= 1, got 0.5"; the program prints it and exits with status 2.
+/// what() reads "scene.json: material.w: must be >= 1, got 0.5"; the program prints it and exits with
+/// status 2.
 class Error : public std::runtime_error {
  public:
   /// Any of `file` and `key` may be empty where there is none.

@@ -6,7 +6,8 @@
 
 namespace grainlaw {
 
-/// Writes `text` to a temporary file beside `file`, flushes it to disk and renames it. Throws Error ("disk full" in words).
+/// Writes `text` to a temporary file beside `file`, flushes it to disk and renames it. Throws Error ("disk
+/// full" in words).
 void write_file(const std::filesystem::path& file, const std::string& text);
 std::string read_file(const std::filesystem::path& file);
 

@@ -1,5 +1,5 @@
-// Reading JSON with errors that name file, key, value and range: each key is asked for once, and a key that nobody asked
-// for is an error.
+// Reading JSON with errors that name file, key, value and range: each key is asked for once, and a key that
+// nobody asked for is an error.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ namespace grainlaw {
 /// Keeps the order of keys, so that what we write can be read by people.
 using Json = nlohmann::ordered_json;
 
-/// Reads a JSON file. Throws Error for a missing file, a syntax error (with its line), a key given twice, nesting
-/// deeper than 64.
+/// Reads a JSON file. Throws Error for a missing file, a syntax error (with its line), a key given twice,
+/// nesting deeper than 64.
 Json load_json(const std::filesystem::path& file);
 Json parse_json(std::string_view text, const std::string& file);
 
@@ -32,9 +32,9 @@ struct Range {
 Range any_number();
 Range at_least(double low);
 Range above(double low);
-Range between(double low, double high);         ///< both ends included
-Range inside(double low, double high);          ///< both ends excluded
-Range above_up_to(double low, double high);     ///< low excluded, high included
+Range between(double low, double high);      ///< both ends included
+Range inside(double low, double high);       ///< both ends excluded
+Range above_up_to(double low, double high);  ///< low excluded, high included
 
 /// Reads one JSON object. Call finish() when all keys were asked for.
 class Reader {
@@ -55,12 +55,12 @@ class Reader {
   std::string word(std::string_view key, const std::vector<std::string>& allowed, std::string fallback);
   bool flag(std::string_view key, bool fallback);
   std::vector<double> numbers(std::string_view key, Range range, std::size_t at_least_count = 1);
-  Reader object(std::string_view key);                  ///< required
-  Reader object_or_empty(std::string_view key);         ///< {} where missing
-  std::vector<Reader> objects(std::string_view key);    ///< required list of objects, not empty
+  Reader object(std::string_view key);                ///< required
+  Reader object_or_empty(std::string_view key);       ///< {} where missing
+  std::vector<Reader> objects(std::string_view key);  ///< required list of objects, not empty
   std::vector<Reader> objects_or_none(std::string_view key);
-  const Json& raw(std::string_view key);                ///< required, any type; counts as asked for
-  std::vector<std::string> keys() const;                ///< all keys present
+  const Json& raw(std::string_view key);  ///< required, any type; counts as asked for
+  std::vector<std::string> keys() const;  ///< all keys present
 
   /// Throws Error for the first key that was not asked for, naming the nearest known one.
   void finish() const;

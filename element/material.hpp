@@ -26,7 +26,8 @@ struct Material {
   Json to_json() const;
 };
 
-/// g3(w) of the isotropic fabric law F_v = g3 nu C (Eq. 3.8) for the uniform size distribution on [2/(w+1), 2w/(w+1)] r_mean.
+/// g3(w) of the isotropic fabric law F_v = g3 nu C (Eq. 3.8) for the uniform size distribution on [2/(w+1),
+/// 2w/(w+1)] r_mean.
 double fabric_size_factor(double w);
 
 }  // namespace grainlaw

@@ -1,4 +1,5 @@
-// Strain paths of element tests: modes, segments, and the one schema (PATH.json) that DEM scenes and the law share.
+// Strain paths of element tests: modes, segments, and the one schema (PATH.json) that DEM scenes and the law
+// share.
 #pragma once
 
 #include <array>
@@ -35,19 +36,24 @@ struct Segment {
   std::optional<double> duration;                       ///< us; for relax the longest time
   Profile profile = Profile::constant;
   double tolerance = 1e-6;  ///< only for relax
+  std::string key;          ///< where it stands in its file ("path.segments[2]")
 };
 
 /// A segment with its strain known: what DEM and law both walk along.
 struct Leg {
   Mode mode;
-  Strain3 strain;      ///< logarithmic strain of this leg, compression positive; zero for relax
-  double eps_vol[2];   ///< from the path's start, at begin and end
-  double eps_dev[2];   ///< signed, from the path's start, at begin and end
-  double duration;     ///< us
+  Strain3 strain;     ///< logarithmic strain of this leg, compression positive; zero for relax
+  double eps_vol[2];  ///< from the path's start, at begin and end
+  double eps_dev[2];  ///< sum of the signed increments from the path's start, at begin and end
+  double duration;    ///< us
   Profile profile;
   double tolerance;
-  /// Fraction of the leg's logarithmic strain applied at time t in [0, duration] (component c): exact for both profiles.
-  double progress(double t, int component) const;
+  /// Fraction of the leg's logarithmic strain applied at time t in [0, duration], the same for all
+  /// components, so that D2 and D3 keep the volume at all times. Cosine: (1 - cos(pi t/duration))/2, which is
+  /// Eq. 2.2 to first order in the strain.
+  double progress(double t) const;
+  /// Its inverse: the time at which fraction f in [0, 1] is applied, us.
+  double time_at(double f) const;
 };
 
 struct Path {
@@ -58,22 +64,25 @@ struct Path {
   static Path read(Reader reader);
   /// The path with defaults filled in, repeats written out.
   Json to_json() const;
-  /// Turns targets into strains, for a path that starts at volume fraction nu. Throws Error when a target is the state already
-  /// reached, or volume fraction leaves (0, 1).
-  std::vector<Leg> legs(double nu, const std::string& file = "") const;
+  /// Turns targets into strains, for a path that starts at volume fraction nu. Throws Error when a target is
+  /// the state already reached, or the volume fraction leaves (0, 1).
+  std::vector<Leg> legs(double nu) const;
+  std::string file;  ///< for error messages
 };
 
-/// Sign convention of deviatoric scalars in a leg (Fsgn): +1 or -1 for tensor q, by the axes of the mode
-/// (D2: sgn(Qyy - Qxx); otherwise sgn(Qzz - (Qxx+Qyy)/2); components: the sign of its projection on the leg's own deviator).
-/// A purely isotropic leg takes the mode of the nearest deviatoric leg after it, then before it, then UNI.
+/// Sign convention of deviatoric scalars (Fsgn): the sign of a tensor's projection on the leg's axis, D2 (-1,
+/// 1, 0), that is sgn(Qyy - Qxx); UNI and D3 (-1/2, -1/2, 1), that is sgn(Qzz - (Qxx+Qyy)/2). `components`
+/// takes whichever of these, or the axis before it, it is coaxial with, else its own deviator. A leg without
+/// deviator (iso, relax) takes the axis before it, else the one after it, else UNI's.
 class SignConvention {
  public:
   explicit SignConvention(const std::vector<Leg>& legs);
-  /// Signed deviatoric magnitude of q in leg i.
+  /// Deviatoric magnitude sqrt(3 J2) of q with its sign in leg i.
   double signed_deviator(const Sym6& q, std::size_t leg) const;
+  const Strain3& axis(std::size_t leg) const { return axes_.at(leg); }
 
  private:
-  std::vector<Strain3> axis_;
+  std::vector<Strain3> axes_;
 };
 
 /// True if the deviators of a and b are parallel (either sign), or one has none.

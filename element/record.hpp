@@ -28,8 +28,8 @@ class Record {
   /// Appends a row; its size must be the number of columns.
   void append(const std::vector<double>& row);
 
-  /// Reads a CSV file. Throws Error (file, line, column) for nan, inf, text, a short or long line, a repeated or missing column,
-  /// an empty file. `required` lists columns that must be there.
+  /// Reads a CSV file. Throws Error (file, line, column) for nan, inf, text, a short or long line, a repeated
+  /// or missing column, an empty file. `required` lists columns that must be there.
   static Record read_csv(const std::filesystem::path& file, const std::vector<std::string>& required = {});
   /// Writes aside, then renames; throws Error when the disk is full. Infinite values are refused.
   void write_csv(const std::filesystem::path& file) const;

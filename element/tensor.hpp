@@ -1,4 +1,5 @@
-// Symmetric second-order tensors as six numbers, in the order xx, yy, zz, yz, xz, xy, and their deviatoric magnitude.
+// Symmetric second-order tensors as six numbers, in the order xx, yy, zz, yz, xz, xy, and their deviatoric
+// magnitude.
 #pragma once
 
 #include <array>

@@ -1,0 +1,49 @@
+#include "grainlaw/element/material.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw {
+
+double Material::contact_duration(double r) const {
+  const double reduced_mass = 0.5 * rho * 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  const double damping = gamma / (2 * reduced_mass);
+  const double omega_squared = k / reduced_mass - damping * damping;
+  return omega_squared > 0 ? std::numbers::pi / std::sqrt(omega_squared)
+                           : std::numeric_limits<double>::infinity();
+}
+
+Material Material::read(Reader reader) {
+  Material m;
+  m.w = reader.number("w", between(1, 100), m.w);
+  m.k = reader.number("k", above(0), m.k);
+  m.r_mean = reader.number("r_mean", above(0), m.r_mean);
+  m.rho = reader.number("rho", above(0), m.rho);
+  m.gamma = reader.number("gamma", at_least(0), m.gamma);
+  m.gamma_b = reader.number("gamma_b", at_least(0), m.gamma_b);
+  reader.finish();
+  if (!std::isfinite(m.contact_duration(m.r_min())))
+    reader.fail("gamma",
+                "overdamps the contact of the two smallest grains (no finite contact duration); must be < " +
+                    to_text(std::sqrt(4 * m.k * 0.5 * m.rho * 4.0 / 3.0 * std::numbers::pi *
+                                      std::pow(m.r_min(), 3))) +
+                    ", got " + to_text(m.gamma));
+  return m;
+}
+
+Json Material::to_json() const {
+  return {{"w", w}, {"k", k}, {"r_mean", r_mean}, {"rho", rho}, {"gamma", gamma}, {"gamma_b", gamma_b}};
+}
+
+double fabric_size_factor(double w) {
+  constexpr double B2 = 1.077, C2 = 0.2629;  // Eq. 3.8
+  // Moments <r^n>/<r>^n of the uniform distribution: r = 1 + h u, u uniform on [-1, 1], h = (w-1)/(w+1).
+  const double h2 = std::pow((w - 1) / (w + 1), 2);
+  const double m2 = 1 + h2 / 3, m3 = 1 + h2, m4 = 1 + 2 * h2 + h2 * h2 / 5, m5 = 1 + 10 * h2 / 3 + h2 * h2;
+  return (1 - B2 + C2 + (B2 - 2 * C2) * m4 / m3 + C2 * m5 / m3) / (1 + C2 * (m2 - 1));
+}
+
+}  // namespace grainlaw

@@ -1,0 +1,147 @@
+#include "grainlaw/element/record.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/file.hpp"
+
+namespace grainlaw {
+
+namespace {
+
+std::vector<std::string_view> split(std::string_view line, char separator) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const auto at = line.find(separator);
+    parts.push_back(line.substr(0, at));
+    if (at == std::string_view::npos) return parts;
+    line.remove_prefix(at + 1);
+  }
+}
+
+/// A field of a record: a finite number, or empty for an undefined value.
+double parse_field(std::string_view field, const std::string& file, std::size_t line,
+                   const std::string& column) {
+  if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
+  double value = 0;
+  const auto [end, code] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (code != std::errc() || end != field.data() + field.size() || !std::isfinite(value))
+    throw Error(file, column,
+                "line " + std::to_string(line) + ": must be a finite number or empty, got \"" +
+                    std::string(field.substr(0, 40)) + "\"");
+  return value;
+}
+
+void check_header(const Record& record, const std::string& file, const std::vector<std::string>& required) {
+  const auto& names = record.columns();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty()) throw Error(file, "", "line 1: column " + std::to_string(i + 1) + " has no name");
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(i))
+      throw Error(file, names[i], "line 1: column is given twice");
+  }
+  for (const auto& column : required)
+    if (!record.has(column)) throw Error(file, column, "column is missing");
+}
+
+}  // namespace
+
+const std::vector<std::string>& prediction_columns() {
+  static const std::vector<std::string> names{"segment",   "eps_vol", "eps_dev", "nu",    "P",
+                                              "sigma_dev", "s_dev",   "F_v",     "F_dev", "C",
+                                              "C_star",    "f_NR",    "phi_J"};
+  return names;
+}
+
+const std::vector<std::string>& record_columns() {
+  static const std::vector<std::string> names = [] {
+    auto all = prediction_columns();
+    for (const char* name : {"t", "Ek_over_Ep", "sxx", "syy", "szz", "syz", "sxz", "sxy", "Fxx", "Fyy", "Fzz",
+                             "Fyz", "Fxz", "Fxy"})
+      all.emplace_back(name);
+    return all;
+  }();
+  return names;
+}
+
+Record::Record(std::vector<std::string> columns) : names_(std::move(columns)), data_(names_.size()) {}
+
+std::size_t Record::index(std::string_view column) const {
+  const auto found = std::find(names_.begin(), names_.end(), column);
+  if (found == names_.end()) throw Error("", std::string(column), "column is missing");
+  return static_cast<std::size_t>(found - names_.begin());
+}
+
+bool Record::has(std::string_view column) const {
+  return std::find(names_.begin(), names_.end(), column) != names_.end();
+}
+
+const std::vector<double>& Record::operator[](std::string_view column) const { return data_[index(column)]; }
+std::vector<double>& Record::operator[](std::string_view column) { return data_[index(column)]; }
+
+void Record::append(const std::vector<double>& row) {
+  if (row.size() != names_.size())
+    throw Error("a record row must have " + std::to_string(names_.size()) + " values, got " +
+                std::to_string(row.size()));
+  for (std::size_t i = 0; i < row.size(); ++i) data_[i].push_back(row[i]);
+  ++rows_;
+}
+
+Record Record::read_csv(const std::filesystem::path& path, const std::vector<std::string>& required) {
+  const std::string file = path.string();
+  const std::string text = read_file(path);
+  std::string_view rest = text;
+  std::size_t line = 0;
+  const auto next = [&](std::string_view& out) {
+    if (rest.empty()) return false;
+    const auto at = rest.find('\n');
+    out = rest.substr(0, at);
+    rest.remove_prefix(at == std::string_view::npos ? rest.size() : at + 1);
+    if (!out.empty() && out.back() == '\r') out.remove_suffix(1);
+    ++line;
+    return true;
+  };
+  std::string_view current;
+  if (!next(current)) throw Error(file, "", "is empty; a record starts with a header line");
+  std::vector<std::string> names;
+  for (const auto name : split(current, ',')) names.emplace_back(name);
+  Record record(std::move(names));
+  check_header(record, file, required);
+  std::vector<double> row(record.names_.size());
+  while (next(current)) {
+    const auto fields = split(current, ',');
+    if (fields.size() != row.size())
+      throw Error(file, "",
+                  "line " + std::to_string(line) + ": must have " + std::to_string(row.size()) +
+                      " fields, got " + std::to_string(fields.size()));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      row[i] = parse_field(fields[i], file, line, record.names_[i]);
+    record.append(row);
+  }
+  if (record.rows() == 0) throw Error(file, "", "has a header but no rows");
+  return record;
+}
+
+std::string Record::to_csv() const {
+  std::string text;
+  for (std::size_t i = 0; i < names_.size(); ++i) text += (i == 0 ? "" : ",") + names_[i];
+  text += '\n';
+  for (std::size_t row = 0; row < rows_; ++row) {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const double value = data_[i][row];
+      if (std::isinf(value))
+        throw Error("", names_[i], "row " + std::to_string(row) + " of the record is infinite");
+      if (i != 0) text += ',';
+      if (!std::isnan(value)) text += to_text(value);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+void Record::write_csv(const std::filesystem::path& file) const { write_file(file, to_csv()); }
+
+}  // namespace grainlaw
