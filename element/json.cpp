@@ -26,6 +26,12 @@ std::string shown(const Json& value) {
   return text.size() <= 60 ? text : text.substr(0, 57) + "...";
 }
 
+/// What a number should have been: "> 0", or "a number > 0" where the value is none.
+std::string wanted(const Json& value, const Range& range) {
+  const bool bare = value.is_number() || range.text().starts_with("a ");
+  return std::string(bare ? "" : "a number ") + range.text();
+}
+
 std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
@@ -123,8 +129,7 @@ const Json& Reader::raw(std::string_view key) { return require(key); }
 double Reader::number(std::string_view key, Range range) {
   const Json& value = require(key);
   if (!value.is_number() || !range.contains(value.get<double>()))
-    fail(key, std::string("must be ") + (value.is_number() ? "" : "a number ") + range.text() + ", got " +
-                  shown(value));
+    fail(key, "must be " + wanted(value, range) + ", got " + shown(value));
   return value.get<double>();
 }
 
@@ -192,8 +197,7 @@ std::vector<double> Reader::numbers(std::string_view key, Range range, std::size
   for (const Json& item : list) {
     if (!item.is_number() || !range.contains(item.get<double>()))
       fail(std::string(key) + "[" + std::to_string(values.size()) + "]",
-           std::string("must be ") + (item.is_number() ? "" : "a number ") + range.text() + ", got " +
-               shown(item));
+           "must be " + wanted(item, range) + ", got " + shown(item));
     values.push_back(item.get<double>());
   }
   return values;

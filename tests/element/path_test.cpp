@@ -1,0 +1,146 @@
+// The path schema: targets become strains, modes carry their signs, and what cannot be is refused.
+#include "grainlaw/element/path.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw {
+namespace {
+
+Path path_of(const std::string& text) { return Path::read({parse_json(text, "p.json"), "p.json"}); }
+
+std::string refusal(const std::string& text) {
+  try {
+    path_of(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+std::string refused_segment(const std::string& segment) {
+  return refusal(R"({"start": {"nu": 0.7}, "segments": [)" + segment + "]}");
+}
+
+TEST(Path, ModesGiveTheirStrainRates) {
+  const auto legs = path_of(R"({"segments": [
+      {"mode": "iso", "amount": 0.3}, {"mode": "uni", "amount": 0.1},
+      {"mode": "d3", "amount": 0.3}, {"mode": "components", "strain": [0.1, 0.2, -0.3]}]})")
+                        .legs(0.3);
+  for (const double e : legs[0].strain) EXPECT_DOUBLE_EQ(e, 0.1);
+  EXPECT_EQ(legs[1].strain, (Strain3{0, 0, 0.1}));
+  EXPECT_NEAR(legs[2].strain[2], 0.2, 1e-15);
+  EXPECT_NEAR(legs[2].strain[0], -0.1, 1e-15);
+  EXPECT_NEAR(legs[1].eps_dev[1], 0.1, 1e-15);  // |eps_dev rate| of UNI is the rate itself
+  EXPECT_NEAR(legs[2].eps_dev[1], 0.4, 1e-15);
+}
+
+TEST(Path, D2ExtendsXCompressesYRestsZ) {
+  const auto legs = path_of(R"({"segments": [{"mode": "d2", "controls": {"eps_dev": 0.4}}]})").legs(0.7);
+  EXPECT_NEAR(legs[0].strain[0], -0.4 / std::numbers::sqrt3, 1e-15);
+  EXPECT_NEAR(legs[0].strain[1], 0.4 / std::numbers::sqrt3, 1e-15);
+  EXPECT_EQ(legs[0].strain[2], 0);
+  EXPECT_EQ(legs[0].eps_vol[1], 0);
+  EXPECT_NEAR(legs[0].duration, 0.4 / std::numbers::sqrt3 / 2.839e-5, 1e-6);  // Eq. for D2: sqrt(3) rate
+}
+
+TEST(Path, TargetsAreAbsoluteAlongThePath) {
+  const auto legs = path_of(R"({"start": {"nu": 0.711}, "segments": [
+      {"mode": "d2", "controls": {"eps_dev": 0.4}}, {"mode": "d2", "controls": {"eps_dev": -0.4}},
+      {"repeat": 2, "segments": [{"mode": "d2", "amount": 0.1}, {"mode": "d2", "amount": -0.1}]},
+      {"mode": "iso", "controls": {"nu": 0.8}}, {"mode": "iso", "controls": {"eps_vol": 0}}]})")
+                        .legs(0.711);
+  ASSERT_EQ(legs.size(), 8u);
+  EXPECT_DOUBLE_EQ(legs[1].eps_dev[0], 0.4);
+  EXPECT_DOUBLE_EQ(legs[1].eps_dev[1], -0.4);
+  EXPECT_NEAR(legs[5].eps_dev[1], -0.4, 1e-15);
+  EXPECT_NEAR(legs[6].eps_vol[1], std::log(0.8 / 0.711), 1e-15);
+  EXPECT_NEAR(legs[7].eps_vol[1], 0, 1e-15);
+}
+
+TEST(Path, RoundTripKeepsThePath) {
+  const Path once = path_of(R"({"start": {"nu": 0.7, "F_dev": -0.1}, "segments": [
+      {"mode": "uni", "controls": {"nu": 0.8}, "duration": 900, "profile": "constant"}, {"mode": "relax", "duration": 10},
+      {"mode": "d3", "amount": 0.1, "repeat": 3}]})");
+  const Json written = once.to_json();
+  EXPECT_EQ(written["segments"].size(), 5u);
+  EXPECT_EQ(Path::read({written, "p.json"}).to_json(), written);
+}
+
+TEST(Path, CosineStartsAndEndsAtRest) {
+  const auto leg = path_of(R"({"segments": [{"mode": "iso", "amount": 0.1, "duration": 100}]})").legs(0.6)[0];
+  EXPECT_EQ(leg.profile, Profile::cosine);
+  EXPECT_EQ(leg.progress(0), 0);
+  EXPECT_EQ(leg.progress(100), 1);
+  EXPECT_NEAR(leg.progress(1), std::pow(std::numbers::pi / 2 / 100, 2), 1e-7);
+  EXPECT_NEAR(leg.progress(37), (1 - std::cos(std::numbers::pi * 0.37)) / 2, 1e-15);
+  for (const double f : {0.0, 1e-6, 0.3, 0.9, 1.0}) EXPECT_NEAR(leg.progress(leg.time_at(f)), f, 1e-14);
+}
+
+TEST(Path, RefusesWhatCannotBe) {
+  EXPECT_EQ(refused_segment(R"({"mode": "d2", "controls": {"nu": 0.8}})"),
+            "p.json: segments[0].controls.nu: d2 keeps the volume, so nu cannot be a target");
+  EXPECT_EQ(
+      refused_segment(R"({"mode": "iso", "controls": {"nu": 0.8, "eps_vol": 0.1}})"),
+      "p.json: segments[0].controls: redundant: in iso each of nu and eps_vol fixes the other; give one");
+  EXPECT_EQ(refused_segment(R"({"mode": "iso", "controls": {"eps_dev": 0.1}})"),
+            "p.json: segments[0].controls.eps_dev: iso does not shear, so eps_dev cannot be a target");
+  EXPECT_EQ(refused_segment(R"({"mode": "iso", "controls": {"nu": 0.8}, "amount": 0.1})"),
+            "p.json: segments[0]: redundant: controls and amount both say how far; give one");
+  EXPECT_EQ(refused_segment(R"({"mode": "d2", "amount": 0.1, "rate": 1e-5, "duration": 10})"),
+            "p.json: segments[0].duration: redundant: rate and duration both say how fast; give one");
+  EXPECT_EQ(
+      refused_segment(R"({"mode": "d2", "controls": {"eps_dev": 0.1}, "repeat": 2})"),
+      "p.json: segments[0].repeat: needs amount: a target is already reached the second time, got controls");
+  EXPECT_EQ(refused_segment(R"({"mode": "iso", "controls": {"nu": 1.2}})"),
+            "p.json: segments[0].controls.nu: must be > 0 and < 1, got 1.2");
+  EXPECT_EQ(refused_segment(R"({"mode": "iso", "controls": {"nu": 0.7}})"),
+            "p.json: segments[0]: has nothing to do: its target is the state already reached");
+  EXPECT_THAT(refused_segment(R"({"mode": "iso", "amount": 3})"),
+              testing::HasSubstr("it must stay > 0 and < 1"));
+  EXPECT_THAT(refused_segment(R"({"mode": "shear"})"), testing::HasSubstr("must be one of iso, uni"));
+  EXPECT_THAT(refused_segment(R"({"mode": "components", "strain": [1, 2, 3, 4, 5, 6]})"),
+              testing::HasSubstr("three numbers"));
+  EXPECT_THAT(refused_segment(R"({"mode": "relax", "rate": 1})"), testing::HasSubstr("unknown key"));
+  EXPECT_THAT(
+      refused_segment(R"({"repeat": 1000000, "segments": [{"mode": "d2", "amount": 0.1, "repeat": 1000}]})"),
+      testing::HasSubstr("longer than 1000000 segments"));
+  EXPECT_EQ(refusal(R"({"segments": []})"), "p.json: segments: must have at least one entry, got []");
+}
+
+TEST(SignConvention, FollowsTheAxesOfTheMode) {
+  const auto legs = path_of(R"({"segments": [{"mode": "iso", "amount": 0.1}, {"mode": "d2", "amount": -0.1},
+      {"mode": "relax"}, {"mode": "uni", "amount": 0.1}]})")
+                        .legs(0.6);
+  const SignConvention sign(legs);
+  const Sym6 y_loaded{1, 3, 2, 0, 0, 0}, z_loaded{1, 1, 2, 0, 0, 0}, x_loaded{3, 1, 2, 0, 0, 0};
+  EXPECT_DOUBLE_EQ(sign.signed_deviator(y_loaded, 0), std::sqrt(3.0));  // iso before D2 takes D2's axis
+  EXPECT_DOUBLE_EQ(sign.signed_deviator(y_loaded, 1),
+                   std::sqrt(3.0));  // sgn(Qyy - Qxx), whatever the direction of strain
+  EXPECT_DOUBLE_EQ(sign.signed_deviator(x_loaded, 2), -std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(sign.signed_deviator(z_loaded, 3), 1.0);
+}
+
+TEST(SignConvention, ReversalByComponentsKeepsTheAxis) {
+  const auto legs = path_of(R"({"segments": [{"mode": "components", "strain": [0.1, -0.3, 0.2]},
+      {"mode": "components", "strain": [-0.1, 0.3, -0.2]}, {"mode": "components", "strain": [0.1, -0.1, 0]}]})")
+                        .legs(0.6);
+  EXPECT_GT(legs[0].eps_dev[1], 0);
+  EXPECT_NEAR(legs[1].eps_dev[1], 0, 1e-15);
+  EXPECT_LT(legs[2].eps_dev[1], 0);  // along D2's axis, backwards
+}
+
+TEST(Path, CoaxialModes) {
+  EXPECT_TRUE(coaxial({0, 0, 1}, {-0.5, -0.5, 1}));  // UNI and D3
+  EXPECT_TRUE(coaxial({-1, 1, 0}, {1, -1, 0}));
+  EXPECT_TRUE(coaxial({1, 1, 1}, {-1, 1, 0}));  // ISO has no axis
+  EXPECT_FALSE(coaxial({-1, 1, 0}, {0, 0, 1}));
+}
+
+}  // namespace
+}  // namespace grainlaw
