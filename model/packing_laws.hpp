@@ -1,0 +1,106 @@
+// Isotropic packing laws: contacts per grain, rattlers, isotropic fabric and pressure as functions of volume
+// fraction (thesis Eqs. 2.11, 2.12, 2.14, 3.8). Pure functions of numbers; all results are non-dimensional.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace grainlaw::model {
+
+/// Numbers of Eqs. 2.11 and 2.12.
+struct ContactCurve {
+  double C0 = 6;      ///< isostatic C* of frictionless spheres
+  double C1 = 0;      ///< growth of C* above nu_c
+  double alpha = 1;   ///< its exponent, > 0
+  double nu_c = 0.5;  ///< volume fraction where contacts begin
+  double phi_c = 0;   ///< fraction of rattlers at nu_c, in [0, 1)
+  double phi_v = 0;   ///< its decay rate
+
+  double excess(double nu) const { return nu / nu_c - 1; }
+};
+
+/// Numbers of Eq. 2.14.
+struct PressureCurve {
+  ContactCurve contacts;  ///< C of the prefactor nu C / nu_c
+  double p0 = 0;
+  double gamma_p = 0;  ///< weak non-linearity; may be negative
+  double nu_c = 0.5;   ///< volume fraction where pressure begins
+};
+
+/// Eq. 2.11: C* = C0 + C1 (nu/nu_c - 1)^alpha, contacts per grain that has at least four.
+/// NaN (undefined: no grain has four contacts) where nu < nu_c.
+inline double corrected_coordination(const ContactCurve& c, double nu) {
+  if (nu < c.nu_c) return std::numeric_limits<double>::quiet_NaN();
+  return c.C0 + c.C1 * std::pow(c.excess(nu), c.alpha);
+}
+
+/// dC*/d nu of Eq. 2.11; infinite at nu_c where alpha < 1, NaN below.
+inline double corrected_coordination_slope(const ContactCurve& c, double nu) {
+  if (nu < c.nu_c) return std::numeric_limits<double>::quiet_NaN();
+  return c.C1 * c.alpha / c.nu_c * std::pow(c.excess(nu), c.alpha - 1);
+}
+
+/// Eq. 2.12: phi_r = phi_c exp[-phi_v (nu/nu_c - 1)], fraction of rattlers; 1 where nu < nu_c.
+inline double rattlers(const ContactCurve& c, double nu) {
+  return nu < c.nu_c ? 1.0 : c.phi_c * std::exp(-c.phi_v * c.excess(nu));
+}
+
+/// d phi_r/d nu of Eq. 2.12; 0 below nu_c.
+inline double rattlers_slope(const ContactCurve& c, double nu) {
+  return nu < c.nu_c ? 0.0 : -c.phi_v / c.nu_c * rattlers(c, nu);
+}
+
+/// C = (1 - phi_r) C*, contacts of grains with at least four, per grain; 0 where nu < nu_c.
+inline double coordination(const ContactCurve& c, double nu) {
+  return nu < c.nu_c ? 0.0 : (1 - rattlers(c, nu)) * corrected_coordination(c, nu);
+}
+
+/// dC/d nu; infinite at nu_c where alpha < 1, 0 below.
+inline double coordination_slope(const ContactCurve& c, double nu) {
+  if (nu < c.nu_c) return 0.0;
+  return (1 - rattlers(c, nu)) * corrected_coordination_slope(c, nu) -
+         rattlers_slope(c, nu) * corrected_coordination(c, nu);
+}
+
+/// F_v = tr F = g3 nu C (Eqs. 3.6, 4.6); 0 where nu < nu_c.
+inline double isotropic_fabric(const ContactCurve& c, double g3, double nu) {
+  return g3 * nu * coordination(c, nu);
+}
+
+/// e d ln F_v/d ln nu, the product that Eq. 4.11 needs, for e = ln(nu/nu_e). It is finite, namely 0, where
+/// nu, nu_c and nu_e meet and the slope itself is infinite. Needs nu >= nu_c.
+inline double strain_times_fabric_slope(const ContactCurve& c, double nu, double e) {
+  if (e == 0) return 0.0;
+  const double phi = rattlers(c, nu);
+  return e * (1 + nu * corrected_coordination_slope(c, nu) / corrected_coordination(c, nu) -
+              nu * rattlers_slope(c, nu) / (1 - phi));
+}
+
+/// The volume fraction at and below which Eq. 2.14 gives no pressure: nu_c, or where its contacts begin.
+inline double jamming_density(const PressureCurve& p) { return std::max(p.nu_c, p.contacts.nu_c); }
+
+/// Eq. 2.14: P* = p0 (nu C/nu_c) e (1 - gamma_p e), e = ln(nu/nu_c); over k* = k/(2<r>), compression
+/// positive. 0 at and below jamming_density().
+inline double pressure(const PressureCurve& p, double nu) {
+  if (nu <= jamming_density(p)) return 0.0;
+  const double e = std::log(nu / p.nu_c);
+  return p.p0 * nu * coordination(p.contacts, nu) / p.nu_c * e * (1 - p.gamma_p * e);
+}
+
+/// dP*/d ln nu of Eq. 2.14; 0 at and below jamming_density().
+inline double pressure_slope(const PressureCurve& p, double nu) {
+  if (nu <= jamming_density(p)) return 0.0;
+  const double e = std::log(nu / p.nu_c), C = coordination(p.contacts, nu);
+  const double dC = nu * coordination_slope(p.contacts, nu);
+  return p.p0 * nu / p.nu_c * ((C + dC) * e * (1 - p.gamma_p * e) + C * (1 - 2 * p.gamma_p * e));
+}
+
+/// The same law for another history: phi_J in place of every nu_c (Eqs. 5.7 to 5.9).
+inline PressureCurve with_jamming_density(PressureCurve p, double phi_J) {
+  p.nu_c = phi_J;
+  p.contacts.nu_c = phi_J;
+  return p;
+}
+
+}  // namespace grainlaw::model

@@ -1,0 +1,92 @@
+// A parameter set (PARAMETERS.json in docs/formats.md): one material from one source, every number with its
+// error and where it comes from. A group or row that is absent is one the set does not know; whoever needs it
+// says so.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "grainlaw/element/json.hpp"
+#include "grainlaw/element/material.hpp"
+#include "grainlaw/model/jamming_density.hpp"
+#include "grainlaw/model/moduli.hpp"
+#include "grainlaw/model/packing_laws.hpp"
+#include "grainlaw/model/saturation.hpp"
+
+namespace grainlaw::model {
+
+/// One number and its story.
+struct Parameter {
+  double value = 0;
+  std::optional<double> stderr_;  ///< standard error; none where nobody gave one
+  std::string unit = "1";         ///< every parameter of the laws is a pure number
+  std::string source = "fit";     ///< "fit", "thesis" or "assumed"
+  std::optional<double> thesis;   ///< the thesis's value, where it has one
+  std::string note;
+};
+
+/// isotropic.MODE: Eqs. 2.11, 2.12 and 2.14 of one deformation mode (a row of Table 2.1).
+struct PackingLaw {
+  Parameter C0, C1, alpha, nu_c_contacts, phi_c, phi_v, p0, gamma_p, nu_c;
+  ContactCurve contacts() const;  ///< at nu_c_contacts
+  PressureCurve pressure() const;
+};
+
+/// shear.QUANTITY: Eq. 2.20 (a row of Table 2.2).
+struct SaturationLaw {
+  Parameter Q_max, Q_v, alpha, nu_c;
+  Saturation values() const;
+};
+
+/// shear: the four numbers of Eqs. 2.17 and 2.18 over volume fraction; any may be unknown (w = 1 has no
+/// betas).
+struct ShearLaws {
+  std::optional<SaturationLaw> s_max, beta_s, F_max, beta_F;
+};
+
+/// moduli: Eqs. 4.11 to 4.15 (Table 4.1).
+struct ModuliLaws {
+  Parameter p0, gamma_p, nu_c, g3, a_I, a_II, g_I, GB_max, Fv_min, Fv_alpha;
+  Moduli values() const;
+};
+
+/// memory: Eqs. 5.1 to 5.13.
+struct MemoryLaws {
+  Parameter phi_SJ, mu, beta, alpha_max, alpha_phi, alpha, eps0, eps0_R;
+  std::optional<Parameter> phi_cr;  ///< the thesis gives no number
+  OverCompression over_compression() const;
+};
+
+/// Which rows a prediction takes where the set holds several (the thesis leaves it open).
+struct Closure {
+  std::string P;                         ///< mode whose pressure law gives the starting P*
+  std::string contacts;                  ///< mode whose C0, C1, alpha, phi_c, phi_v give C*, phi_r and F_v
+  bool contacts_at_moduli_nu_c = false;  ///< contacts_nu_c: "moduli" (true) or "row" (false)
+};
+
+struct ParameterSet {
+  std::string name;
+  Material material;
+  Closure closure;
+  std::map<std::string, PackingLaw> isotropic;  ///< by mode: iso, uni, d2, d3
+  std::optional<ShearLaws> shear;
+  std::optional<ModuliLaws> moduli;
+  std::optional<MemoryLaws> memory;
+  std::string file;  ///< where it was read from, for error messages; may be empty
+
+  /// Throws Error naming file and key.
+  static ParameterSet load(const std::filesystem::path& file);
+  static ParameterSet read(Reader reader);
+  Json to_json() const;
+
+  /// The row or group asked for. Throws Error naming file, group and why it is needed ("... needs
+  /// isotropic.d2").
+  const PackingLaw& packing(const std::string& mode, const std::string& why) const;
+  const SaturationLaw& saturation(const std::string& quantity, const std::string& why) const;
+  const ModuliLaws& need_moduli(const std::string& why) const;
+  const MemoryLaws& need_memory(const std::string& why) const;
+};
+
+}  // namespace grainlaw::model

@@ -1,0 +1,53 @@
+// The law as a material point along a path: parameter set and path in, a record out, with the columns of a
+// DEM record.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "grainlaw/element/json.hpp"
+#include "grainlaw/element/path.hpp"
+#include "grainlaw/element/record.hpp"
+#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/parameters.hpp"
+#include "grainlaw/model/status.hpp"
+
+namespace grainlaw::model {
+
+struct PredictOptions {
+  Form form = Form::coupled;
+  double rtol = 1e-8;      ///< relative error of the state, > 0
+  double atol = 1e-12;     ///< absolute error of P*, sigma*_dev, F_dev, s_dev, >= 0
+  int rows_per_leg = 100;  ///< evenly spaced in the leg's strain; a relaxation has one row, its end
+};
+
+/// A point of the path: leg (segment) and the fraction of its strain that is done.
+struct Sample {
+  std::size_t leg = 0;
+  double progress = 0;  ///< in [0, 1]; of a relaxation only its end counts
+};
+
+struct Prediction {
+  Record record;  ///< prediction_columns(); rows up to the failure where status is failed
+  Json start;     ///< every start value: {"P": {"value": 0.0222, "from": "pressure law isotropic.iso
+                  ///< (Eq. 2.14)"}, ...}
+  std::vector<std::string> warnings;
+  Status status;
+};
+
+/// Walks `path` from its start: one row for the start (segment 0), then options.rows_per_leg rows per leg.
+/// Throws Error (file, key) for a start or path the law cannot take, or a group the parameter set lacks; a
+/// failure of the integration is not thrown but returned as the status.
+Prediction predict(const ParameterSet& parameters, const Path& path, const PredictOptions& options = {});
+
+/// The same with one row per sample; samples are in the order of the path.
+Prediction predict(const ParameterSet& parameters, const Path& path, const std::vector<Sample>& samples,
+                   const PredictOptions& options = {});
+
+/// The samples at which a record of the same path was written, row by row (columns segment, eps_vol,
+/// eps_dev), so that a prediction compares with it line by line. `nu_start` is where the record starts.
+/// Throws Error for a row that is not on the path.
+std::vector<Sample> samples_of(const Record& record, const Path& path, double nu_start);
+
+}  // namespace grainlaw::model

@@ -1,0 +1,32 @@
+// How a walk along a path ended, in a word and in a sentence.
+#pragma once
+
+#include <string>
+
+namespace grainlaw::model {
+
+struct Status {
+  enum class Code {
+    ok,        ///< the end was reached
+    unjammed,  ///< the end was reached, and the point carries no stress there: P = 0
+    failed     ///< the integration stopped; the state is that of the last row
+  };
+  Code code = Code::ok;
+  std::string message;
+
+  bool failed() const { return code == Code::failed; }
+};
+
+inline std::string name_of(Status::Code code) {
+  switch (code) {
+    case Status::Code::ok:
+      return "ok";
+    case Status::Code::unjammed:
+      return "unjammed";
+    case Status::Code::failed:
+      return "failed";
+  }
+  return "";
+}
+
+}  // namespace grainlaw::model
