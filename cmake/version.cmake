@@ -1,0 +1,54 @@
+# Version and commit, for element/version.cpp alone: a new commit compiles that one file and links again.
+#
+# Included by CMakeLists.txt, this defines grainlaw_version(target). Run as a script (cmake -P) at every build, it writes
+# OUTPUT, and only if its text has changed.
+
+if(CMAKE_SCRIPT_MODE_FILE)
+  set(commit unknown)
+  find_program(git git)
+  if(git)
+    # A source tree without history may lie inside someone else's repository: that one's commit is not ours.
+    execute_process(COMMAND ${git} -C ${SOURCE} rev-parse --show-toplevel
+                    OUTPUT_VARIABLE top OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+    file(REAL_PATH "${SOURCE}" source)
+    if(NOT failed)
+      file(REAL_PATH "${top}" top)
+    endif()
+    if(NOT failed AND top STREQUAL source)
+      execute_process(COMMAND ${git} -C ${SOURCE} rev-parse --short HEAD
+                      OUTPUT_VARIABLE hash OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+      if(NOT failed)
+        set(commit ${hash})
+        execute_process(COMMAND ${git} --no-optional-locks -C ${SOURCE} status --porcelain --untracked-files=no
+                        OUTPUT_VARIABLE changes ERROR_QUIET)
+        if(changes)
+          string(APPEND commit -dirty)
+        endif()
+      endif()
+    endif()
+  endif()
+  file(CONFIGURE OUTPUT "${OUTPUT}" @ONLY CONTENT [[// Written by cmake/version.cmake at build time.
+#pragma once
+
+namespace grainlaw::build_info {
+
+inline constexpr const char* version = "@VERSION@";
+inline constexpr const char* commit = "@commit@";
+
+}  // namespace grainlaw::build_info
+]])
+  return()
+endif()
+
+# grainlaw_version(target): lets the target include "grainlaw_build_info.hpp".
+function(grainlaw_version target)
+  set(folder ${PROJECT_BINARY_DIR}/build_info)
+  add_custom_target(grainlaw_build_info
+                    COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
+                            -DOUTPUT=${folder}/grainlaw_build_info.hpp
+                            -P ${PROJECT_SOURCE_DIR}/cmake/version.cmake
+                    BYPRODUCTS ${folder}/grainlaw_build_info.hpp
+                    COMMENT "Looking up the commit" VERBATIM)
+  add_dependencies(${target} grainlaw_build_info)
+  target_include_directories(${target} PRIVATE ${folder})
+endfunction()

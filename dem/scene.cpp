@@ -1,0 +1,239 @@
+#include "grainlaw/dem/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::dem {
+
+namespace {
+
+constexpr std::int64_t fewest_grains = 8, most_grains = 10'000'000;
+constexpr std::int64_t largest_seed = std::int64_t{1} << 53;  ///< JSON readers keep whole numbers up to here
+constexpr std::int64_t most_rows = 100'000, most_segments = 1'000'000;
+constexpr double densest_gas = 0.45;   ///< random placement without overlap slows down without limit beyond
+constexpr double largest_step = 0.2;   ///< of the smallest contact duration
+constexpr double target_slack = 1e-9;  ///< a target equal to an end of its segment up to rounding is inside
+
+Relaxation read_relaxation(Reader reader) {
+  Relaxation relax;
+  relax.tolerance = reader.number("tolerance", inside(0, 1), relax.tolerance);
+  relax.duration = reader.number("duration", above(0), relax.duration);
+  reader.finish();
+  return relax;
+}
+
+SnapshotRequest read_request(Reader& reader) {
+  SnapshotRequest request;
+  request.segment = static_cast<std::size_t>(reader.integer("segment", 0, most_segments - 1));
+  request.nu = reader.maybe_number("nu", inside(0, 1));
+  request.eps_dev = reader.maybe_number("eps_dev", any_number());
+  if (request.nu && request.eps_dev)
+    reader.fail("eps_dev", "redundant: nu already says where in the segment; give one");
+  reader.finish();
+  return request;
+}
+
+/// A DEM measures these at the start; only nu can be chosen.
+void refuse_prescribed(const Path& path, const Reader& reader) {
+  const std::pair<const char*, std::optional<double>> measured[] = {{"P", path.start.P},
+                                                                    {"sigma_dev", path.start.sigma_dev},
+                                                                    {"F_dev", path.start.F_dev},
+                                                                    {"phi_J", path.start.phi_J},
+                                                                    {"phi_max", path.start.phi_max}};
+  for (const auto& [key, value] : measured)
+    if (value)
+      reader.fail(
+          std::string("path.start.") + key,
+          "must be left out: grains measure it, they cannot be given it (only nu may be given), got " +
+              to_text(*value));
+}
+
+/// Lets path.start.nu and the preparation say the same.
+void agree_on_start(Scene& scene, const Reader& reader) {
+  const auto& nu = scene.path.start.nu;
+  if (!nu) return;
+  if (const auto* packing = std::get_if<NewPacking>(&scene.preparation)) {
+    if (*nu != packing->nu)
+      reader.fail("path.start.nu",
+                  "must be preparation.nu = " + to_text(packing->nu) + ", got " + to_text(*nu));
+    return;
+  }
+  auto& choice = std::get<FromSnapshot>(scene.preparation).choice;
+  if (choice.frame)
+    reader.fail("path.start.nu", "redundant: preparation.frame already chooses the state; give one");
+  if (choice.nu && *choice.nu != *nu)
+    reader.fail("path.start.nu", "must be preparation.nu = " + to_text(*choice.nu) + ", got " + to_text(*nu));
+  choice.nu = nu;
+}
+
+/// Throws Error unless the value lies between the two ends of a segment that moves it.
+void check_target(const SnapshotRequest& request, std::size_t index, const Leg& leg, double nu_start,
+                  const std::string& file) {
+  if (!request.nu && !request.eps_dev) return;
+  const bool by_nu = request.nu.has_value();
+  const std::string name = by_nu ? "nu" : "eps_dev";
+  const double wanted = by_nu ? *request.nu : *request.eps_dev;
+  double low = by_nu ? nu_start * std::exp(leg.eps_vol[0]) : leg.eps_dev[0];
+  double high = by_nu ? nu_start * std::exp(leg.eps_vol[1]) : leg.eps_dev[1];
+  const std::string segment = "segment " + std::to_string(request.segment) + " (" + name_of(leg.mode) + ")";
+  const std::string key = "measure.snapshots[" + std::to_string(index) + "]." + name;
+  if (std::abs(high - low) <= target_slack)
+    throw Error(file, key,
+                segment + " does not change " + name + ", so it has no such place, got " + to_text(wanted));
+  const std::string range = to_text(low) + " to " + to_text(high);
+  if (low > high) std::swap(low, high);
+  if (wanted < low - target_slack || wanted > high + target_slack)
+    throw Error(file, key,
+                "must lie in " + segment + ", " + name + " from " + range + ", got " + to_text(wanted));
+}
+
+void check_segments_exist(const Scene& scene) {
+  const auto& snapshots = scene.measure.snapshots;
+  const std::size_t count = scene.path.segments.size();
+  for (std::size_t i = 0; i < snapshots.size(); ++i)
+    if (snapshots[i].segment >= count)
+      throw Error(scene.file, "measure.snapshots[" + std::to_string(i) + "].segment",
+                  "must be a segment of the path, 0 to " + std::to_string(count - 1) + ", got " +
+                      std::to_string(snapshots[i].segment));
+}
+
+}  // namespace
+
+NewPacking NewPacking::read(Reader reader, SeedKey seed_key) {
+  NewPacking packing;
+  packing.count = reader.integer("count", fewest_grains, most_grains, packing.count);
+  if (seed_key == SeedKey::optional)
+    packing.seed = static_cast<std::uint64_t>(reader.integer("seed", 0, largest_seed, 1));
+  else if (reader.has("seed"))
+    reader.fail("seed", "must be left out: the campaign's seeds are used");
+  packing.nu_gas = reader.number("nu_gas", above_up_to(0, densest_gas), packing.nu_gas);
+  packing.speed = reader.number("speed", above(0), packing.speed);
+  packing.nu = reader.number("nu", inside(packing.nu_gas, 1), packing.nu);
+  packing.rate = reader.number("rate", above(0), packing.rate);
+  packing.relax = read_relaxation(reader.object_or_empty("relax"));
+  reader.finish();
+  return packing;
+}
+
+Json NewPacking::to_json() const {
+  return {{"count", count},
+          {"seed", seed},
+          {"nu_gas", nu_gas},
+          {"speed", speed},
+          {"nu", nu},
+          {"rate", rate},
+          {"relax", {{"tolerance", relax.tolerance}, {"duration", relax.duration}}}};
+}
+
+FromSnapshot FromSnapshot::read(Reader reader, const std::filesystem::path& scene_dir) {
+  FromSnapshot from;
+  from.snapshot = reader.text("snapshot");
+  if (from.snapshot.empty()) reader.fail("snapshot", "must be the path of a snapshots.h5, got \"\"");
+  from.file = scene_dir / from.snapshot;
+  from.choice.nu = reader.maybe_number("nu", inside(0, 1));
+  constexpr std::int64_t most_frames = 1'000'000'000;
+  if (reader.has("frame"))
+    from.choice.frame = static_cast<std::uint64_t>(reader.integer("frame", 0, most_frames));
+  if (reader.has("segment"))
+    from.choice.segment = static_cast<std::uint64_t>(reader.integer("segment", 0, most_segments - 1));
+  if (from.choice.frame && from.choice.nu)
+    reader.fail("frame", "redundant: nu already chooses the state; give one");
+  if (from.choice.frame && from.choice.segment)
+    reader.fail("segment", "redundant: frame already chooses the state; give one");
+  reader.finish();
+  return from;
+}
+
+Json FromSnapshot::to_json(const std::filesystem::path& dir) const {
+  auto path = snapshot;
+  if (!dir.empty() && path.is_relative())
+    path = std::filesystem::weakly_canonical(file).lexically_relative(std::filesystem::weakly_canonical(dir));
+  Json json{{"snapshot", path.generic_string()}};
+  if (choice.nu) json["nu"] = *choice.nu;
+  if (choice.frame) json["frame"] = *choice.frame;
+  if (choice.segment) json["segment"] = *choice.segment;
+  return json;
+}
+
+Measure Measure::read(Reader reader, const Measure& fallback) {
+  Measure measure = fallback;
+  measure.rows = reader.integer("rows", 1, most_rows, fallback.rows);
+  if (reader.has("snapshots")) measure.snapshots.clear();
+  for (Reader& request : reader.objects_or_none("snapshots"))
+    measure.snapshots.push_back(read_request(request));
+  measure.time_step = reader.number("time_step", above_up_to(0, largest_step), fallback.time_step);
+  measure.time_step_gas =
+      reader.number("time_step_gas", above_up_to(0, largest_step), fallback.time_step_gas);
+  reader.finish();
+  return measure;
+}
+
+Json Measure::to_json() const {
+  Json list = Json::array();
+  for (const auto& request : snapshots) {
+    Json item{{"segment", request.segment}};
+    if (request.nu) item["nu"] = *request.nu;
+    if (request.eps_dev) item["eps_dev"] = *request.eps_dev;
+    list.push_back(item);
+  }
+  return {{"rows", rows}, {"snapshots", list}, {"time_step", time_step}, {"time_step_gas", time_step_gas}};
+}
+
+Scene Scene::read(Reader reader, const std::filesystem::path& scene_dir) {
+  Scene scene;
+  scene.file = reader.file();
+  scene.material = Material::read(reader.object_or_empty("material"));
+  Reader preparation = reader.object_or_empty("preparation");
+  if (preparation.has("snapshot"))
+    scene.preparation = FromSnapshot::read(preparation, scene_dir);
+  else
+    scene.preparation = NewPacking::read(preparation);
+  scene.path = Path::read(reader.object("path"));
+  scene.measure = Measure::read(reader.object_or_empty("measure"));
+  reader.finish();
+  refuse_prescribed(scene.path, reader);
+  agree_on_start(scene, reader);
+  check_segments_exist(scene);
+  if (const auto nu = scene.start_nu(); nu && std::holds_alternative<NewPacking>(scene.preparation))
+    scene.legs(*nu);
+  return scene;
+}
+
+Scene Scene::load(const std::filesystem::path& file) {
+  const Json json = load_json(file);
+  Scene scene = read(Reader(json, file.string()), file.parent_path());
+  if (const auto* from = std::get_if<FromSnapshot>(&scene.preparation)) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(from->file, ignored))
+      throw Error(scene.file, "preparation.snapshot",
+                  "must be a file, seen from the directory of the scene, got \"" + from->snapshot.string() +
+                      "\" (there is no " + from->file.string() + ")");
+  }
+  return scene;
+}
+
+Json Scene::to_json(const std::filesystem::path& dir) const {
+  const Json prepared = std::holds_alternative<NewPacking>(preparation)
+                            ? std::get<NewPacking>(preparation).to_json()
+                            : std::get<FromSnapshot>(preparation).to_json(dir);
+  return {{"material", material.to_json()},
+          {"preparation", prepared},
+          {"path", path.to_json()},
+          {"measure", measure.to_json()}};
+}
+
+std::optional<double> Scene::start_nu() const {
+  if (const auto* packing = std::get_if<NewPacking>(&preparation)) return packing->nu;
+  return std::get<FromSnapshot>(preparation).choice.nu;
+}
+
+std::vector<Leg> Scene::legs(double nu) const {
+  auto legs = path.legs(nu);
+  for (std::size_t i = 0; i < measure.snapshots.size(); ++i)
+    check_target(measure.snapshots[i], i, legs.at(measure.snapshots[i].segment), nu, file);
+  return legs;
+}
+
+}  // namespace grainlaw::dem

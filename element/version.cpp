@@ -1,0 +1,11 @@
+#include "grainlaw/element/version.hpp"
+
+#include "grainlaw_build_info.hpp"
+
+namespace grainlaw {
+
+std::string version() { return build_info::version; }
+
+std::string commit() { return build_info::commit; }
+
+}  // namespace grainlaw
