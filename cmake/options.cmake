@@ -1,8 +1,10 @@
 # Build options and the one function that makes a grainlaw library.
+include(CMakeDependentOption)
 option(GRAINLAW_DEM "Build the DEM engine (needs HDF5)" ON)
 option(GRAINLAW_MODEL "Build the constitutive model (needs SUNDIALS, Eigen)" ON)
-option(GRAINLAW_CALIBRATE "Build the calibration (needs Ceres, the DEM and the model)" ON)
-option(GRAINLAW_APPS "Build the program grainlaw (needs CLI11, spdlog)" ON)
+cmake_dependent_option(GRAINLAW_CALIBRATE "Build the calibration (needs Ceres, the DEM and the model)" ON
+                       "GRAINLAW_DEM;GRAINLAW_MODEL" OFF)
+cmake_dependent_option(GRAINLAW_APPS "Build the program grainlaw (needs CLI11, spdlog)" ON "GRAINLAW_CALIBRATE" OFF)
 option(GRAINLAW_TESTS "Build the tests (needs GoogleTest)" ON)
 option(GRAINLAW_SANITIZE "AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
 option(GRAINLAW_WERROR "Warnings are errors" OFF)

@@ -1,0 +1,9 @@
+# Run in the consumer's project(): at its end, no package but these may have been found.
+function(check_packages_found)
+  get_property(found GLOBAL PROPERTY PACKAGES_FOUND)
+  list(REMOVE_ITEM found grainlaw nlohmann_json Eigen3 SUNDIALS)
+  if(found)
+    message(FATAL_ERROR "component model also looked for: ${found}")
+  endif()
+endfunction()
+cmake_language(DEFER CALL check_packages_found)
