@@ -1,0 +1,33 @@
+// A grid of cells over the box: sorts grains in space and lists the pairs within a range, through all images.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/pairs.hpp"
+
+namespace grainlaw::dem {
+
+class Cells {
+ public:
+  /// `place` must lie within the box, which must be at least `range` wide: cells are at least as wide as
+  /// that, and a grid may be one or two cells wide, because each of the 27 neighbours of a cell is looked up
+  /// together with the image it belongs to.
+  Cells(const std::vector<Quad>& place, const Box& box, double range);
+
+  /// Grains cell by cell (z fastest), in each cell as they came.
+  const std::vector<std::uint32_t>& order() const { return order_; }
+
+  /// All pairs closer than r_i + r_j + skin <= range, each once; `place` in the order of order().
+  /// Throws Error if two grains lie at the same point.
+  void list_pairs(const std::vector<Quad>& place, const Box& box, double skin, Pairs& pairs) const;
+
+ private:
+  std::array<int, 3> count_;
+  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> begin_;  ///< first grain of each cell, in the new order
+};
+
+}  // namespace grainlaw::dem

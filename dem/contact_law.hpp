@@ -1,0 +1,25 @@
+// The contact law: force, energy and stiffness of one contact from scalars. Another law is another struct
+// with the same members; nothing else in the engine knows the formula.
+#pragma once
+
+#include "grainlaw/element/material.hpp"
+
+namespace grainlaw::dem {
+
+/// Linear visco-elastic contact, Eq. 2.1: f = k delta + gamma d(delta)/dt along the normal while delta >= 0.
+/// The force is repulsive where positive and is not clipped: it may pull shortly before the grains part.
+struct LinearContact {
+  double k = 0;      ///< ug/us^2
+  double gamma = 0;  ///< ug/us, the same for every pair
+
+  /// Force, ug mm/us^2; `overlap` delta >= 0 in mm, `closing` d(delta)/dt in mm/us.
+  double force(double overlap, double closing) const { return k * overlap + gamma * closing; }
+  /// Elastic energy, ug mm^2/us^2.
+  double energy(double overlap) const { return 0.5 * k * overlap * overlap; }
+  /// d(force)/d(overlap), ug/us^2.
+  double stiffness(double /*overlap*/) const { return k; }
+
+  static LinearContact of(const Material& material) { return {material.k, material.gamma}; }
+};
+
+}  // namespace grainlaw::dem

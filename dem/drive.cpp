@@ -1,0 +1,57 @@
+#include "grainlaw/dem/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainlaw::dem {
+
+namespace {
+constexpr std::uint64_t relax_check_interval = 100;  // steps between two looks at the energies
+}
+
+Vec3 Drive::length(double t) const {
+  const double p = leg_.progress(t);
+  return {start_[0] * std::exp(-leg_.strain[0] * p), start_[1] * std::exp(-leg_.strain[1] * p),
+          start_[2] * std::exp(-leg_.strain[2] * p)};
+}
+
+Vec3 Drive::rate(double t, double dt) const {
+  const double from = std::max(t - 0.5 * dt, 0.0), to = std::min(t + 0.5 * dt, leg_.duration);
+  const double speed = (leg_.progress(to) - leg_.progress(from)) / (to - from);
+  return {-leg_.strain[0] * speed, -leg_.strain[1] * speed, -leg_.strain[2] * speed};
+}
+
+StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_steps) {
+  const auto needed = static_cast<std::uint64_t>(std::ceil(leg.duration / longest_step * (1 - 1e-12)));
+  StepPlan plan;
+  plan.steps = std::max({std::uint64_t{1}, least_steps, needed});
+  plan.dt = leg.duration / static_cast<double>(plan.steps);
+  return plan;
+}
+
+void follow(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, const AfterStep& after_step) {
+  const Drive drive(dynamics.box().length(), leg);
+  dynamics.start(plan.dt, drive.rate(0, plan.dt));
+  for (std::uint64_t n = 1; n <= plan.steps; ++n) {
+    const double t = n == plan.steps ? leg.duration : static_cast<double>(n) * plan.dt;
+    dynamics.step(drive.length(t), drive.rate(t, plan.dt));
+    if (!after_step(n)) return;
+  }
+}
+
+void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, const AfterStep& after_step) {
+  dynamics.start(plan.dt, {});
+  const double kinetic_at_start = dynamics.measure().kinetic;
+  const auto at_rest = [&] {
+    const Measurement m = dynamics.measure();
+    return m.f_NR > 0 ? m.kinetic <= leg.tolerance * m.elastic
+                      : m.kinetic <= leg.tolerance * kinetic_at_start;
+  };
+  for (std::uint64_t n = 1; n <= plan.steps; ++n) {
+    dynamics.step();
+    if (!after_step(n)) return;
+    if (n % relax_check_interval == 0 && at_rest()) return;
+  }
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,45 @@
+// Drives the box and its grains along one leg of a path.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "grainlaw/dem/dynamics.hpp"
+#include "grainlaw/element/path.hpp"
+
+namespace grainlaw::dem {
+
+/// The motion of the box along a leg: edges L(t) = L(0) exp(-strain progress(t)).
+class Drive {
+ public:
+  Drive(const Vec3& start_length, const Leg& leg) : start_(start_length), leg_(leg) {}
+  /// Edges at time t of the leg, mm.
+  Vec3 length(double t) const;
+  /// d(ln L)/dt at time t, averaged over t - dt/2 ... t + dt/2 within the leg, 1/us.
+  Vec3 rate(double t, double dt) const;
+
+ private:
+  Vec3 start_;
+  Leg leg_;
+};
+
+/// How a leg is cut into steps.
+struct StepPlan {
+  std::uint64_t steps = 1;  ///< for relax the most
+  double dt = 0;            ///< us, at most what was asked for
+};
+/// At least `least_steps` (and one) of equal length, each no longer than `longest_step` us.
+StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_steps);
+
+/// Called after each step with its number, counted from 1; false ends the leg there.
+using AfterStep = std::function<bool(std::uint64_t step)>;
+
+/// Follows a leg that strains the box.
+void follow(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, const AfterStep& after_step);
+
+/// Lets the grains come to rest in a box at rest, until E_k/E_p falls below leg.tolerance or the plan ends.
+/// Where no grain has four contacts, there is no network to compare with: there, until E_k has fallen by that
+/// factor.
+void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, const AfterStep& after_step);
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,77 @@
+// The motion of the grains: velocity Verlet in a deforming periodic box, with viscous contacts and a viscous
+// background.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/contact_law.hpp"
+#include "grainlaw/dem/grains.hpp"
+#include "grainlaw/dem/measure.hpp"
+#include "grainlaw/dem/neighbours.hpp"
+#include "grainlaw/dem/state.hpp"
+#include "grainlaw/element/material.hpp"
+
+namespace grainlaw::dem {
+
+/// The equations. With G = d(ln L)/dt of the box and v the FLUCTUATION velocity (true velocity minus G x),
+///
+///   dx/dt = v + G x,   m dv/dt = sum of contact forces - gamma_b v - m G v.
+///
+/// The box carries the grains along; the background damps only what they move beyond that, so that it does
+/// not hold back a homogeneous flow. The contacts (Eq. 2.1) see the true relative velocity, v_i - v_j + G
+/// (x_i - x_j). The term m G v makes the work of the box equal that of the total stress, static plus kinetic.
+///
+/// One step. x moves with the velocity of the half step, the box moves, and forces are computed for this (x,
+/// box) with the full-step velocity predicted from the last acceleration, v + dt a. Its error is O(dt^2), so
+/// the scheme is of second order although the forces depend on velocity (the half-step velocity would make it
+/// first order). All that is read between steps (positions, velocities, measurements, states) belongs to one
+/// time and one box.
+class Dynamics {
+ public:
+  /// Throws Error as Neighbours::update does.
+  Dynamics(const Material& material, const State& state);
+
+  /// Must precede the first step, and steps with another dt (us). `rate` is d(ln L)/dt from now on.
+  void start(double dt, const Vec3& rate);
+  /// One step to a box of edges `length` (mm), which then deforms at `rate` (1/us).
+  void step(const Vec3& length, const Vec3& rate);
+  /// One step in a box at rest.
+  void step() { step(box_.length(), {}); }
+
+  const Box& box() const { return box_; }
+  double dt() const { return dt_; }
+  double time() const { return time_; }  ///< us
+  std::uint64_t steps() const { return steps_; }
+  std::size_t count() const { return grains_.count(); }
+  const Grains& grains() const { return grains_; }  ///< sorted in space, not as in the State
+  const Neighbours& neighbours() const { return neighbours_; }
+  const LinearContact& law() const { return law_; }
+
+  /// Fluctuation velocities of the full step, mm/us, in the order of grains().
+  std::vector<Quad> velocities() const;
+  Measurement measure() const;
+  /// In the order of the State it began with; positions wrapped into the box.
+  State state() const;
+
+ private:
+  void move(const Vec3& length);
+  void update_forces();
+  /// dv/dt of grain i, from its force and the velocity the force was computed with.
+  Quad acceleration(std::size_t i) const;
+
+  Material material_;
+  LinearContact law_;
+  Box box_;
+  Grains grains_;
+  Neighbours neighbours_;
+  double dt_ = 0;
+  double time_;
+  std::uint64_t steps_;
+};
+
+/// A time step: `fraction` of the contact duration of two grains of the smallest radius present, us.
+double time_step(const Material& material, double smallest_radius, double fraction);
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,41 @@
+// Runs one element test: prepares or loads a packing, takes it along its path and writes the record.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "grainlaw/dem/scene.hpp"
+
+namespace grainlaw::dem {
+
+struct RunHooks {
+  /// Called some times a second with the share of all planned steps that is done, in [0, 1], and what is
+  /// going on
+  /// ("compress the gas", "d2 (2 of 3)"). Relaxations may end early, so the share can jump ahead; it never
+  /// falls.
+  std::function<void(double fraction_done, const std::string& stage)> progress;
+  /// When it turns true the test stops within some 10 ms.
+  const std::atomic<bool>* stop = nullptr;
+};
+
+struct RunSummary {
+  double wall_s = 0;
+  std::uint64_t particle_steps = 0;
+  std::vector<std::string> warnings;
+  bool stopped = false;
+};
+
+/// Writes into `out_dir`, which must not exist or be empty: scene.json at the start, snapshots.h5 as they are
+/// taken, provenance.json and, last, record.csv. So a directory without record.csv is an incomplete one: the
+/// test was stopped or failed. The record has one row for the start of the path, and then measure.rows per
+/// segment. Bad input throws Error before anything is written. The run does not depend on hooks, rows (as
+/// long as a segment takes more than two steps per row anyway) or snapshots, and the same scene gives the
+/// same record to the last bit.
+RunSummary run_element_test(const Scene& scene, const std::filesystem::path& out_dir,
+                            const RunHooks& hooks = {});
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,55 @@
+#include "grainlaw/dem/grains.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "grainlaw/dem/box.hpp"
+
+namespace grainlaw::dem {
+
+Grains::Grains(const State& state, double rho)
+    : place(state.count()),
+      motion(state.count()),
+      force(state.count()),
+      acceleration(state.count()),
+      id(state.count()) {
+  std::iota(id.begin(), id.end(), 0u);
+  for (std::size_t i = 0; i < state.count(); ++i) {
+    const auto& x = state.position[i];
+    const auto& v = state.velocity[i];
+    place[i] = {x[0], x[1], x[2], state.radius[i]};
+    motion[i] = {v[0], v[1], v[2], 0};
+    acceleration[i].w = 1 / (rho * sphere_volume(state.radius[i]));
+  }
+}
+
+double Grains::largest_radius() const {
+  double r = 0;
+  for (const Quad& p : place) r = std::max(r, p.w);
+  return r;
+}
+
+double Grains::smallest_radius() const {
+  double r = place.empty() ? 0 : place[0].w;
+  for (const Quad& p : place) r = std::min(r, p.w);
+  return r;
+}
+
+namespace {
+template <class T>
+void permute(std::vector<T>& list, const std::vector<std::uint32_t>& order) {
+  std::vector<T> sorted(list.size());
+  for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = list[order[i]];
+  list.swap(sorted);
+}
+}  // namespace
+
+void Grains::reorder(const std::vector<std::uint32_t>& order) {
+  permute(place, order);
+  permute(motion, order);
+  permute(force, order);
+  permute(acceleration, order);
+  permute(id, order);
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,33 @@
+// The grains as the engine holds them: one 32-byte line per grain and field, sorted in space.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "grainlaw/dem/state.hpp"
+#include "grainlaw/dem/vec.hpp"
+
+namespace grainlaw::dem {
+
+/// Entry i of every vector belongs to the same grain; `id` tells which one of the State it is. Positions are
+/// wrapped into the box only when the neighbour list sorts the grains, and move freely in between, so that
+/// the image by which two neighbours meet stays the same.
+struct Grains {
+  std::vector<Quad> place;         ///< x, y, z | radius, mm
+  std::vector<Quad> motion;        ///< fluctuation velocity that the contact forces see, mm/us
+  std::vector<Quad> force;         ///< contact force, ug mm/us^2
+  std::vector<Quad> acceleration;  ///< of the step before, mm/us^2 | 1/mass, 1/ug
+  std::vector<std::uint32_t> id;
+
+  Grains() = default;
+  /// `rho` in ug/mm^3.
+  Grains(const State& state, double rho);
+
+  std::size_t count() const { return place.size(); }
+  double largest_radius() const;
+  double smallest_radius() const;
+  /// Grain `order[i]` becomes grain i.
+  void reorder(const std::vector<std::uint32_t>& order);
+};
+
+}  // namespace grainlaw::dem

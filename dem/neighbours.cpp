@@ -1,0 +1,131 @@
+#include "grainlaw/dem/neighbours.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grainlaw/dem/cells.hpp"
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::dem {
+
+namespace {
+
+constexpr double rest_budget = 0.01;    // s_i of a grain at rest, in units of the mean radius
+constexpr double box_budget = 1e-3;     // 1 - e_min: the compression of the box that an inner list survives
+constexpr double outer_skin = 0.7;      // in units of the mean radius; less where the box is narrow
+constexpr double least_skin = 0.02;     // the narrowest outer skin worth listing
+constexpr double flight_share = 0.125;  // s_i at most this share of the outer skin
+
+/// Smallest stretch, at most 1.
+double shrink(const Vec3& stretch) { return std::min({1.0, stretch[0], stretch[1], stretch[2]}); }
+
+/// |x - E X|^2
+double strayed(const Quad& x, const Quad& reference, const Vec3& stretch) {
+  const double a = x.x - stretch[0] * reference.x, b = x.y - stretch[1] * reference.y,
+               c = x.z - stretch[2] * reference.z;
+  return a * a + b * b + c * c;
+}
+
+}  // namespace
+
+bool Neighbours::outdated(const Grains& grains, const Box& box) const {
+  if (inner_reference_.size() != grains.count()) return true;
+  const Vec3 stretch = box.stretch_from(inner_length_);
+  if (shrink(stretch) < 1 - box_budget) return true;
+  double excess = -1;
+  for (std::size_t i = 0; i < grains.count(); ++i)
+    excess = std::max(excess, strayed(grains.place[i], inner_reference_[i], stretch) - inner_reference_[i].w);
+  return excess > 0;
+}
+
+void Neighbours::update(Grains& grains, const Box& box, double lookahead) {
+  make_budgets(grains, lookahead);
+  if (!outer_covers(grains, box)) {
+    sort_and_list(grains, box);
+    make_budgets(grains, lookahead);  // in the new order, and within the new skin
+  }
+  filter(grains, box);
+  ++updates_;
+}
+
+void Neighbours::make_budgets(const Grains& grains, double lookahead) {
+  const double least = std::min(rest_budget * unit_, 0.25 * flight_share * outer_skin_);
+  const double most = flight_share * outer_skin_;
+  budget_.resize(grains.count());
+  for (std::size_t i = 0; i < grains.count(); ++i) {
+    const Quad& v = grains.motion[i];
+    const double speed = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    budget_[i] = std::min(least + speed * lookahead, most);
+  }
+}
+
+/// Whether every pair that the inner list must hold is in the outer one: for all i, with e the shrink since
+/// the outer list was made, |w_i| + s_i/e_min + r_i (1/e_min - e) <= e skin/2.
+bool Neighbours::outer_covers(const Grains& grains, const Box& box) const {
+  if (outer_reference_.size() != grains.count()) return false;
+  const Vec3 stretch = box.stretch_from(outer_length_);
+  const double e = shrink(stretch), inflate = 1 / (1 - box_budget);
+  for (std::size_t i = 0; i < grains.count(); ++i) {
+    const double room = 0.5 * e * outer_skin_ - budget_[i] * inflate - grains.place[i].w * (inflate - e);
+    if (!(room >= 0) || strayed(grains.place[i], outer_reference_[i], stretch) > room * room) return false;
+  }
+  return true;
+}
+
+void Neighbours::sort_and_list(Grains& grains, const Box& box) {
+  const double narrowest = box.shortest(), widest_grain = 2 * largest_radius_;
+  outer_skin_ = std::min(outer_skin * unit_, narrowest - widest_grain);
+  if (!(outer_skin_ >= least_skin * unit_))
+    throw Error("the box is " + to_text(narrowest) +
+                " mm wide, too narrow for its largest grain of diameter " + to_text(widest_grain) +
+                " mm: it must be wider than " + to_text(widest_grain + least_skin * unit_) +
+                " mm, or a grain would touch its own image; take more grains or less strain");
+  for (Quad& p : grains.place) {
+    const Vec3 x = box.wrap({p.x, p.y, p.z});
+    p = {x[0], x[1], x[2], p.w};
+  }
+  const Cells cells(grains.place, box, widest_grain + outer_skin_);
+  grains.reorder(cells.order());
+  cells.list_pairs(grains.place, box, outer_skin_, outer_);
+  outer_reference_ = grains.place;
+  outer_length_ = box.length();
+  ++sorts_;
+}
+
+void Neighbours::filter(const Grains& grains, const Box& box) {
+  const std::size_t count = grains.count();
+  inner_reference_.resize(count);
+  const double inflate = 1 / (1 - box_budget);
+  // Positions with the grain's reach (r_i + s_i)/e_min, so that one line tells all about a grain.
+  for (std::size_t i = 0; i < count; ++i) {
+    const Quad& p = grains.place[i];
+    inner_reference_[i] = {p.x, p.y, p.z, (p.w + budget_[i]) * inflate};
+  }
+  inner_length_ = box.length();
+  const auto near = [this](const Quad& a, const Quad& b, const Quad& shift) {
+    const double x = a.x - b.x - shift.x, y = a.y - b.y - shift.y, z = a.z - b.z - shift.z, reach = a.w + b.w;
+    return x * x + y * y + z * z < reach * reach;
+  };
+  const std::array<Quad, 27> shifts = box.shifts();
+  inner_.begin.resize(count + 1);
+  inner_.partner.resize(outer_.partner.size());
+  std::uint32_t n = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Quad a = inner_reference_[i];
+    inner_.begin[i] = n;
+    for (std::uint32_t p = outer_.begin[i]; p < outer_.begin[i + 1]; ++p) {
+      const std::uint32_t j = outer_.partner[p];
+      inner_.partner[n] = j;  // kept or overwritten by the next one: no branch to mispredict
+      n += near(a, inner_reference_[j], {}) ? 1u : 0u;
+    }
+  }
+  inner_.begin[count] = n;
+  inner_.partner.resize(n);
+  inner_.crossing.clear();
+  for (const auto& pair : outer_.crossing)
+    if (near(inner_reference_[pair.i], inner_reference_[pair.j], shifts[pair.image]))
+      inner_.crossing.push_back(pair);
+  for (std::size_t i = 0; i < count; ++i) inner_reference_[i].w = budget_[i] * budget_[i];
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,55 @@
+// Which pairs of grains may touch, kept right while grains move and the box deforms.
+// Cells give an outer list, seldom; the outer list is filtered to the short inner list that the force loop
+// walks.
+#pragma once
+
+#include <vector>
+
+#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/grains.hpp"
+#include "grainlaw/dem/pairs.hpp"
+
+namespace grainlaw::dem {
+
+/// How a list stays right. Let X be the position of a grain when a list was made, E the stretch of the box
+/// since then (its smallest component, at most 1, is e), and w = x - E X what the grain moved on its own. Two
+/// grains whose images were |D| apart then are at least e|D| - |w_i| - |w_j| apart now. Each grain has a
+/// budget s_i for |w_i|, more if it flies; the box has one for e. Every pair with |D| < (r_i + s_i + r_j +
+/// s_j)/e_min is listed, so the list is complete as long as |w_i| <= s_i for all i and e >= e_min; `outdated`
+/// tests exactly that. The outer list has the same skin for all grains, and is renewed when a filtered list
+/// could miss a pair.
+class Neighbours {
+ public:
+  /// `unit` is the length that skins are measured in (the mean radius), mm.
+  Neighbours(double unit, double largest_radius) : unit_(unit), largest_radius_(largest_radius) {}
+
+  /// True when a pair missing in the list might touch.
+  bool outdated(const Grains& grains, const Box& box) const;
+
+  /// Renews the list; wraps and sorts the grains where the outer list must be renewed too. A grain may go
+  /// `lookahead` us at its speed before the next call. Throws Error if the box is too narrow for a grain not
+  /// to touch its own image, or if two grains lie at the same point.
+  void update(Grains& grains, const Box& box, double lookahead);
+
+  const Pairs& pairs() const { return inner_; }
+  std::size_t outer_pairs() const { return outer_.count(); }
+  std::uint64_t updates() const { return updates_; }  ///< how often the inner list was made
+  std::uint64_t sorts() const { return sorts_; }      ///< how often the outer list was made
+
+ private:
+  void make_budgets(const Grains& grains, double lookahead);
+  bool outer_covers(const Grains& grains, const Box& box) const;
+  void sort_and_list(Grains& grains, const Box& box);
+  void filter(const Grains& grains, const Box& box);
+
+  double unit_, largest_radius_;
+  double outer_skin_ = 0;
+  Pairs outer_, inner_;
+  std::vector<double> budget_;         ///< s_i, mm
+  std::vector<Quad> inner_reference_;  ///< X | s_i^2, of the inner list
+  std::vector<Quad> outer_reference_;  ///< X, of the outer list
+  Vec3 inner_length_{}, outer_length_{};
+  std::uint64_t updates_ = 0, sorts_ = 0;
+};
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,108 @@
+#include "grainlaw/dem/row_writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::dem {
+
+namespace {
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+constexpr double quasi_static = 1e-3;    // E_k/E_p of the thesis's data stays below (section 2.2.3)
+constexpr double jammed_share = 0.82;    // of the grains with four contacts: jammed (section 5.3)
+constexpr double crystallising_w = 1.2;  // fits of the thesis leave out w below (Table 3.2)
+
+/// One row by column name.
+class Row {
+ public:
+  Row() : values_(record_columns().size(), undefined) {}
+  void set(const char* column, double value) {
+    const auto& names = record_columns();
+    const auto at = std::find(names.begin(), names.end(), column);
+    if (at == names.end()) throw Error(std::string("a DEM record has no column ") + column);
+    values_[static_cast<std::size_t>(at - names.begin())] = value;
+  }
+  void set(const std::array<const char*, 6>& columns, const Sym6& tensor, double factor) {
+    for (std::size_t c = 0; c < 6; ++c) set(columns[c], factor * tensor[c]);
+  }
+  const std::vector<double>& values() const { return values_; }
+
+ private:
+  std::vector<double> values_;
+};
+
+std::string short_text(double x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", x);
+  return text.data();
+}
+
+}  // namespace
+
+RowWriter::RowWriter(const Material& material, const std::vector<Leg>& legs, double nu_start)
+    : material_(material), legs_(legs), sign_(legs), nu_start_(nu_start), record_(record_columns()) {}
+
+double RowWriter::eps_vol(const Measurement& m) const { return std::log(m.nu / nu_start_); }
+
+double RowWriter::eps_dev(std::size_t segment, double progress) const {
+  const Leg& leg = legs_.at(segment);
+  return leg.eps_dev[0] + progress * (leg.eps_dev[1] - leg.eps_dev[0]);
+}
+
+void RowWriter::append(const Measurement& m, std::size_t segment, double progress, double time) {
+  if (!std::isfinite(m.kinetic) || !std::isfinite(m.elastic))
+    throw Error("the motion of the grains became unstable at nu = " + to_text(m.nu) +
+                ", t = " + to_text(time) + " us; take a smaller measure.time_step or rate");
+  const double per_unit = 1 / material_.stress_unit();
+  const double pressure = trace(m.stress) / 3 * per_unit;
+  const double shear = sign_.signed_deviator(m.stress, segment) * per_unit;
+  const double ratio = m.elastic > 0 ? m.kinetic / m.elastic : undefined;
+  Row row;
+  row.set("segment", static_cast<double>(segment));
+  row.set("eps_vol", eps_vol(m));
+  row.set("eps_dev", eps_dev(segment, progress));
+  row.set("nu", m.nu);
+  row.set("P", pressure);
+  row.set("sigma_dev", shear);
+  row.set("s_dev", pressure > 0 ? shear / pressure : undefined);
+  row.set("F_v", trace(m.fabric));
+  row.set("F_dev", sign_.signed_deviator(m.fabric, segment));
+  row.set("C", m.C);
+  row.set("C_star", m.C_star);
+  row.set("f_NR", m.f_NR);
+  row.set("t", time);
+  row.set("Ek_over_Ep", ratio);
+  row.set({"sxx", "syy", "szz", "syz", "sxz", "sxy"}, m.stress, per_unit);
+  row.set({"Fxx", "Fyy", "Fzz", "Fyz", "Fxz", "Fxy"}, m.fabric, 1);
+  record_.append(row.values());
+  if (m.f_NR < jammed_share || !(m.elastic > 0)) return;
+  ++jammed_;
+  if (ratio > quasi_static) ++restless_;
+  if (ratio > 1) ++violent_;
+  if (ratio > worst_ratio_) {
+    worst_ratio_ = ratio;
+    worst_nu_ = m.nu;
+  }
+}
+
+std::vector<std::string> RowWriter::warnings() const {
+  std::vector<std::string> list;
+  const std::string rows = " of " + std::to_string(jammed_) + " jammed rows";
+  if (violent_ > 0)
+    list.push_back("E_k/E_p is above 1 in " + std::to_string(violent_) + rows +
+                   ": the deformation is far too fast to be quasi-static; lower the rate");
+  else if (restless_ > 0)
+    list.push_back("E_k/E_p is above 1e-3 in " + std::to_string(restless_) + rows + " (largest " +
+                   short_text(worst_ratio_) + ", at nu = " + short_text(worst_nu_) +
+                   "): there the deformation is not quasi-static");
+  if (material_.w < crystallising_w)
+    list.push_back("w = " + short_text(material_.w) +
+                   " is below 1.2: grains of nearly equal size may crystallise, and the laws may not hold");
+  return list;
+}
+
+}  // namespace grainlaw::dem
