@@ -7,8 +7,8 @@ namespace grainlaw {
 
 /// "0.1.0"
 std::string version();
-/// Short hash of the commit, with "-dirty" where files under version control had been changed; "unknown"
-/// without git.
+/// Short hash of the commit, with "-dirty" where git was there to see that files had been changed; "unknown"
+/// without a git history.
 std::string commit();
 
 }  // namespace grainlaw
