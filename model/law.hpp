@@ -20,6 +20,7 @@ struct Stretch {
   double eps_dev = 0;  ///< signed deviatoric strain
 
   double nu(double t) const { return nu_0 * std::exp(eps_vol * t); }
+  Stretch rest(double t) const { return {nu(t), eps_vol * (1 - t), eps_dev * (1 - t)}; }
   /// q = sgn(d eps_dev): -1, 0 or 1.
   double q() const { return static_cast<double>((eps_dev > 0) - (eps_dev < 0)); }
 };
@@ -52,9 +53,8 @@ struct State {
   double s_dev() const;
 };
 
-/// The variables that are integrated, and their Jacobian by columns: J[i + 3 j] = d rate_i/d y_j.
+/// The variables that are integrated, and their Jacobian by columns: J[i + size j] = d rate_i/d y_j.
 using Variables = std::array<double, 3>;
-using Jacobian = std::array<double, 9>;
 
 /// Eqs. 2.17, 2.18 evaluated at the current volume fraction; nothing to integrate.
 struct ReducedClosed {
@@ -93,25 +93,30 @@ Law make_law(const ParameterSet& parameters, Form form);
 Form form_of(const Law& law);
 const Laws& laws_of(const Law& law);
 
-/// Below this P* (over k*) the coupled form is unjammed: s_dev = sigma*_dev/P* has no limit at P* = 0.
+/// At and below this P* (over k*) the coupled form is unjammed: sigma*_dev/P* has no limit at P* = 0.
 inline constexpr double smallest_pressure = 1e-9;
 
-/// The volume fraction at which a jammed point loses its contacts whatever it carries.
-double lowest_density(const Law& law);
+/// The volume fraction at and below which a jammed point has no contacts whatever it carries.
+double unjamming_density(const Law& law);
 
-/// Takes the stress, the fabric and the direction away. In the coupled form phi_J becomes the current nu: the
-/// density at which the pressure vanished.
+/// Takes stress, fabric and direction away. In the coupled form phi_J becomes the current nu: the density at
+/// which the pressure vanished.
 void unjam(const Law& law, State& state);
 
-/// An unjammed point whose nu has reached phi_J and grows: an isotropic state, at the start of a direction.
-/// The coupled form starts a little later in t, where P* is well above smallest_pressure, on the solution of
-/// Eq. 4.16 for P* -> 0. Returns that t.
-double jam(const Law& law, State& state, const Stretch& stretch, double t);
+/// The volume fraction at which an unjammed point jams when compressed. For the coupled form a little above
+/// phi_J, where P* is well above smallest_pressure.
+double jamming_density(const Law& law, const State& state);
 
-/// Begins a direction of shear q from the current state (jammed): S_I, S_F,I, s_0, F_0.
+/// Jams a point that has reached jamming_density() on this stretch: isotropic before, at the start of a
+/// direction now. The coupled form is put on the solution of Eq. 4.16 for P* -> 0 (both stresses and F_dev
+/// proportional to the volume strain since phi_J).
+void jam(const Law& law, State& state, const Stretch& stretch);
+
+/// Begins a direction of shear q at a jammed state: S_I, S_F,I, s_0, F_0.
 void begin_direction(const Law& law, State& state, double q);
 
-/// What stops the law on this stretch, in words ("s_max is -0.01 at nu = 0.9; it must be > 0"), if anything.
+/// What keeps the law from this stretch, in words ("s_max is -0.01 at nu = 0.9 and must be > 0"), if
+/// anything.
 std::optional<std::string> objection(const Law& law, const Stretch& stretch);
 
 /// Isotropic contact quantities of a state. Unjammed: no contacts, C_star is NaN (undefined). All NaN where

@@ -1,0 +1,175 @@
+#include "grainlaw/model/integrator.hpp"
+
+#include <cvodes/cvodes.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <string>
+#include <sundials/sundials_context.hpp>
+#include <type_traits>
+#include <utility>
+
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::model {
+
+namespace {
+
+/// CVODE bounds the error of each step, and errors add up along a path: it is asked for this part of the
+/// tolerance.
+constexpr double safety = 0.02;
+constexpr long most_steps = 200'000;
+
+struct FreeVector {
+  void operator()(N_Vector v) const { N_VDestroy(v); }
+};
+struct FreeMatrix {
+  void operator()(SUNMatrix m) const { SUNMatDestroy(m); }
+};
+struct FreeSolver {
+  void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); }
+};
+struct FreeMemory {
+  void operator()(void* memory) const { CVodeFree(&memory); }
+};
+template <class Handle, class Free>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Free>;
+
+double* data(N_Vector v) { return N_VGetArrayPointer(v); }
+
+bool all_finite(const double* x, int count) {
+  return std::all_of(x, x + count, [](double v) { return std::isfinite(v); });
+}
+
+}  // namespace
+
+struct Integrator::Handles {
+  Handles(int size_, Tolerance tolerance);
+
+  // What CVODE calls: 0 done, 1 try a smaller step, -1 the system threw.
+  static int rate(realtype t, N_Vector y, N_Vector dydt, void* user);
+  static int jacobian(realtype t, N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vector, N_Vector,
+                      N_Vector);
+  static int event(realtype t, N_Vector y, realtype* g, void* user);
+  static void complain(int, const char*, const char*, char* message, void* user);
+  template <class Call>
+  int guarded(Call call);
+
+  int size;
+  sundials::Context context;  // first in, last out: everything below belongs to it
+  Owned<N_Vector, FreeVector> y;
+  Owned<SUNMatrix, FreeMatrix> matrix;
+  Owned<SUNLinearSolver, FreeSolver> solver;
+  std::unique_ptr<void, FreeMemory> memory;
+
+  const System* system = nullptr;
+  double t = 0;               // where y belongs
+  std::string complaint;      // what CVODE said last
+  std::exception_ptr thrown;  // by a function of the system
+};
+
+template <class Call>
+int Integrator::Handles::guarded(Call call) {
+  try {
+    return call() ? 0 : 1;
+  } catch (...) {  // must not cross C; rethrown by advance()
+    thrown = std::current_exception();
+    return -1;
+  }
+}
+
+int Integrator::Handles::rate(realtype t, N_Vector y, N_Vector dydt, void* user) {
+  auto& h = *static_cast<Handles*>(user);
+  return h.guarded([&] { return h.system->rate(t, data(y), data(dydt)) && all_finite(data(dydt), h.size); });
+}
+
+int Integrator::Handles::jacobian(realtype t, N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vector,
+                                  N_Vector, N_Vector) {
+  auto& h = *static_cast<Handles*>(user);
+  double* entries = SUNDenseMatrix_Data(J);
+  return h.guarded(
+      [&] { return h.system->jacobian(t, data(y), entries) && all_finite(entries, h.size * h.size); });
+}
+
+int Integrator::Handles::event(realtype t, N_Vector y, realtype* g, void* user) {
+  auto& h = *static_cast<Handles*>(user);
+  return h.guarded([&] {
+    g[0] = h.system->event(t, data(y));
+    return true;
+  });
+}
+
+void Integrator::Handles::complain(int, const char*, const char*, char* message, void* user) {
+  static_cast<Handles*>(user)->complaint = message;
+}
+
+Integrator::Handles::Handles(int size_, Tolerance tolerance)
+    : size(size_),
+      y(N_VNew_Serial(size_, context)),
+      matrix(SUNDenseMatrix(size_, size_, context)),
+      solver(y && matrix ? SUNLinSol_Dense(y.get(), matrix.get(), context) : nullptr),
+      memory(CVodeCreate(CV_BDF, context)) {
+  if (!y || !matrix || !solver || !memory) throw Error("the integrator got no memory");
+  N_VConst(0.0, y.get());
+  void* m = memory.get();
+  int failed = CVodeSetErrHandlerFn(m, complain, this);
+  if (failed == 0) failed = CVodeInit(m, rate, 0.0, y.get());
+  if (failed == 0) failed = CVodeSStolerances(m, safety * tolerance.rtol, safety * tolerance.atol);
+  if (failed == 0) failed = CVodeSetUserData(m, this);
+  if (failed == 0) failed = CVodeSetLinearSolver(m, solver.get(), matrix.get());
+  if (failed == 0) failed = CVodeSetJacFn(m, jacobian);
+  if (failed == 0) failed = CVodeSetMaxNumSteps(m, most_steps);
+  if (failed == 0) failed = CVodeSetNoInactiveRootWarn(m);
+  if (failed != 0) throw Error("the integrator cannot be set up: " + complaint);
+}
+
+Integrator::Integrator(int size, Tolerance tolerance) {
+  if (!(tolerance.rtol > 0 && std::isfinite(tolerance.rtol)))
+    throw Error("", "rtol", "must be > 0, got " + to_text(tolerance.rtol));
+  if (!(tolerance.atol >= 0 && std::isfinite(tolerance.atol)))
+    throw Error("", "atol", "must be >= 0, got " + to_text(tolerance.atol));
+  handles_ = std::make_unique<Handles>(size, tolerance);
+}
+
+Integrator::~Integrator() = default;
+Integrator::Integrator(Integrator&&) noexcept = default;
+Integrator& Integrator::operator=(Integrator&&) noexcept = default;
+
+Status Integrator::start(const System& system, double t, double end, const double* y) {
+  Handles& h = *handles_;
+  h.system = &system;
+  h.t = t;
+  h.complaint.clear();
+  std::copy(y, y + h.size, data(h.y.get()));
+  void* m = h.memory.get();
+  int failed = CVodeReInit(m, t, h.y.get());
+  if (failed == 0) failed = CVodeRootInit(m, system.event ? 1 : 0, system.event ? Handles::event : nullptr);
+  if (failed == 0) failed = CVodeSetStopTime(m, end);
+  if (failed != 0) return {Status::Code::failed, "the integrator cannot start: " + h.complaint};
+  return {};
+}
+
+Integrator::Arrival Integrator::advance(double to, double* y) {
+  Handles& h = *handles_;
+  // CVODE refuses a first step below the rounding of t; nothing moves over so short a way.
+  constexpr double too_close = 1e-13;
+  int code = CV_SUCCESS;
+  if (to > h.t + too_close * std::max(1.0, std::abs(to)))
+    code = CVode(h.memory.get(), to, h.y.get(), &h.t, CV_NORMAL);
+  if (h.thrown) std::rethrow_exception(std::exchange(h.thrown, nullptr));
+  if (code < 0) return {{Status::Code::failed, "CVODE: " + h.complaint}, h.t, false};
+  std::copy_n(data(h.y.get()), h.size, y);
+  return {{}, h.t, code == CV_ROOT_RETURN};
+}
+
+long Integrator::steps() const {
+  long count = 0;
+  CVodeGetNumSteps(handles_->memory.get(), &count);
+  return count;
+}
+
+}  // namespace grainlaw::model

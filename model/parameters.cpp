@@ -1,0 +1,241 @@
+#include "grainlaw/model/parameters.hpp"
+
+#include <array>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::model {
+
+namespace {
+
+constexpr const char* format_name = "grainlaw-parameters-1";
+const std::vector<std::string> modes{"iso", "uni", "d2", "d3"};
+
+/// One key of a group: its name, where it is kept, what values it may have. Read and written from the same
+/// table.
+template <class Group>
+struct Key {
+  const char* name;
+  Parameter Group::*member;
+  Range range;
+};
+
+Range share() { return {0, 1, false, true}; }  // of rattlers
+
+const std::vector<Key<PackingLaw>>& keys(const PackingLaw&) {
+  static const std::vector<Key<PackingLaw>> list{
+      {"C0", &PackingLaw::C0, above(0)},        {"C1", &PackingLaw::C1, at_least(0)},
+      {"alpha", &PackingLaw::alpha, above(0)},  {"nu_c_contacts", &PackingLaw::nu_c_contacts, inside(0, 1)},
+      {"phi_c", &PackingLaw::phi_c, share()},   {"phi_v", &PackingLaw::phi_v, at_least(0)},
+      {"p0", &PackingLaw::p0, above(0)},        {"gamma_p", &PackingLaw::gamma_p, any_number()},
+      {"nu_c", &PackingLaw::nu_c, inside(0, 1)}};
+  return list;
+}
+
+const std::vector<Key<SaturationLaw>>& keys(const SaturationLaw&) {
+  static const std::vector<Key<SaturationLaw>> list{{"Q_max", &SaturationLaw::Q_max, any_number()},
+                                                    {"Q_v", &SaturationLaw::Q_v, any_number()},
+                                                    {"alpha", &SaturationLaw::alpha, any_number()},
+                                                    {"nu_c", &SaturationLaw::nu_c, inside(0, 1)}};
+  return list;
+}
+
+const std::vector<Key<ModuliLaws>>& keys(const ModuliLaws&) {
+  static const std::vector<Key<ModuliLaws>> list{{"p0", &ModuliLaws::p0, above(0)},
+                                                 {"gamma_p", &ModuliLaws::gamma_p, any_number()},
+                                                 {"nu_c", &ModuliLaws::nu_c, inside(0, 1)},
+                                                 {"g3", &ModuliLaws::g3, above(0)},
+                                                 {"a_I", &ModuliLaws::a_I, any_number()},
+                                                 {"a_II", &ModuliLaws::a_II, any_number()},
+                                                 {"g_I", &ModuliLaws::g_I, any_number()},
+                                                 {"GB_max", &ModuliLaws::GB_max, above(0)},
+                                                 {"Fv_min", &ModuliLaws::Fv_min, at_least(0)},
+                                                 {"Fv_alpha", &ModuliLaws::Fv_alpha, above(0)}};
+  return list;
+}
+
+const std::vector<Key<MemoryLaws>>& keys(const MemoryLaws&) {
+  static const std::vector<Key<MemoryLaws>> list{
+      {"phi_SJ", &MemoryLaws::phi_SJ, inside(0, 1)},   {"mu", &MemoryLaws::mu, above(0)},
+      {"beta", &MemoryLaws::beta, above(0)},           {"alpha_max", &MemoryLaws::alpha_max, at_least(0)},
+      {"alpha_phi", &MemoryLaws::alpha_phi, above(0)}, {"alpha", &MemoryLaws::alpha, above(0)},
+      {"eps0", &MemoryLaws::eps0, above(0)},           {"eps0_R", &MemoryLaws::eps0_R, above(0)}};
+  return list;
+}
+
+/// shear.QUANTITY: name and where it is kept.
+constexpr std::array<std::pair<const char*, std::optional<SaturationLaw> ShearLaws::*>, 4> quantities{
+    {{"s_max", &ShearLaws::s_max},
+     {"beta_s", &ShearLaws::beta_s},
+     {"F_max", &ShearLaws::F_max},
+     {"beta_F", &ShearLaws::beta_F}}};
+
+Parameter read_parameter(Reader reader, const Range& range) {
+  Parameter parameter;
+  parameter.value = reader.number("value", range);
+  if (!reader.raw("stderr").is_null()) parameter.stderr_ = reader.number("stderr", at_least(0));
+  parameter.unit = reader.word("unit", {"1"});  // of a pure number; another unit would be misread
+  parameter.source = reader.word("source", {"fit", "thesis", "assumed"});
+  parameter.thesis = reader.maybe_number("thesis", any_number());
+  parameter.note = reader.text("note", "");
+  reader.finish();
+  return parameter;
+}
+
+Json parameter_json(const Parameter& parameter) {
+  Json json{{"value", parameter.value},
+            {"stderr", nullptr},
+            {"unit", parameter.unit},
+            {"source", parameter.source}};
+  if (parameter.stderr_) json["stderr"] = *parameter.stderr_;
+  if (parameter.thesis) json["thesis"] = *parameter.thesis;
+  if (!parameter.note.empty()) json["note"] = parameter.note;
+  return json;
+}
+
+template <class Group>
+Group read_keys(Reader& reader) {
+  Group group;
+  for (const auto& key : keys(group)) group.*key.member = read_parameter(reader.object(key.name), key.range);
+  return group;
+}
+
+template <class Group>
+Group read_group(Reader reader) {
+  Group group = read_keys<Group>(reader);
+  reader.finish();
+  return group;
+}
+
+template <class Group>
+Json group_json(const Group& group) {
+  Json json = Json::object();
+  for (const auto& key : keys(group)) json[key.name] = parameter_json(group.*key.member);
+  return json;
+}
+
+/// The object at a key that may be absent; the key counts as known either way.
+std::optional<Reader> maybe_object(Reader& reader, const char* key) {
+  Reader object = reader.object_or_empty(key);
+  if (!reader.has(key)) return std::nullopt;
+  return object;
+}
+
+ShearLaws read_shear(Reader reader) {
+  ShearLaws shear;
+  for (const auto& [name, member] : quantities)
+    if (auto object = maybe_object(reader, name)) shear.*member = read_group<SaturationLaw>(*object);
+  reader.finish();
+  return shear;
+}
+
+MemoryLaws read_memory(Reader reader) {
+  auto memory = read_keys<MemoryLaws>(reader);
+  if (auto object = maybe_object(reader, "phi_cr")) memory.phi_cr = read_parameter(*object, inside(0, 1));
+  reader.finish();
+  return memory;
+}
+
+std::map<std::string, PackingLaw> read_isotropic(Reader reader) {
+  std::map<std::string, PackingLaw> rows;
+  for (const auto& mode : modes)
+    if (auto object = maybe_object(reader, mode.c_str())) rows[mode] = read_group<PackingLaw>(*object);
+  reader.finish();
+  return rows;
+}
+
+Closure read_closure(Reader reader) {
+  Closure closure;
+  closure.P = reader.word("P", modes);
+  closure.contacts = reader.word("contacts", modes);
+  closure.contacts_at_moduli_nu_c = reader.word("contacts_nu_c", {"row", "moduli"}) == "moduli";
+  reader.finish();
+  return closure;
+}
+
+}  // namespace
+
+ContactCurve PackingLaw::contacts() const {
+  return {C0.value, C1.value, alpha.value, nu_c_contacts.value, phi_c.value, phi_v.value};
+}
+
+PressureCurve PackingLaw::pressure() const { return {contacts(), p0.value, gamma_p.value, nu_c.value}; }
+
+Saturation SaturationLaw::values() const { return {Q_max.value, Q_v.value, alpha.value, nu_c.value}; }
+
+Moduli ModuliLaws::values() const {
+  return {p0.value,   gamma_p.value, nu_c.value,   g3.value,     a_I.value,
+          a_II.value, g_I.value,     GB_max.value, Fv_min.value, Fv_alpha.value};
+}
+
+OverCompression MemoryLaws::over_compression() const {
+  return {phi_SJ.value, mu.value, beta.value, alpha_max.value, alpha_phi.value};
+}
+
+ParameterSet ParameterSet::load(const std::filesystem::path& file) {
+  return read(Reader(load_json(file), file.string()));
+}
+
+ParameterSet ParameterSet::read(Reader reader) {
+  ParameterSet set;
+  set.file = reader.file();
+  reader.word("format", {format_name});
+  set.name = reader.text("name");
+  set.material = Material::read(reader.object("material"));
+  set.closure = read_closure(reader.object("closure"));
+  set.isotropic = read_isotropic(reader.object_or_empty("isotropic"));
+  if (auto object = maybe_object(reader, "shear")) set.shear = read_shear(*object);
+  if (auto object = maybe_object(reader, "moduli")) set.moduli = read_group<ModuliLaws>(*object);
+  if (auto object = maybe_object(reader, "memory")) set.memory = read_memory(*object);
+  reader.finish();
+  return set;
+}
+
+Json ParameterSet::to_json() const {
+  Json json{{"format", format_name}, {"name", name}, {"material", material.to_json()}};
+  json["closure"] = {{"P", closure.P},
+                     {"contacts", closure.contacts},
+                     {"contacts_nu_c", closure.contacts_at_moduli_nu_c ? "moduli" : "row"}};
+  json["isotropic"] = Json::object();
+  for (const auto& mode : modes)
+    if (isotropic.contains(mode)) json["isotropic"][mode] = group_json(isotropic.at(mode));
+  if (shear) {
+    json["shear"] = Json::object();
+    for (const auto& [quantity, member] : quantities)
+      if ((*shear).*member) json["shear"][quantity] = group_json(*((*shear).*member));
+  }
+  if (moduli) json["moduli"] = group_json(*moduli);
+  if (memory) {
+    json["memory"] = group_json(*memory);
+    if (memory->phi_cr) json["memory"]["phi_cr"] = parameter_json(*memory->phi_cr);
+  }
+  return json;
+}
+
+const PackingLaw& ParameterSet::packing(const std::string& mode, const std::string& why) const {
+  const auto row = isotropic.find(mode);
+  if (row == isotropic.end()) throw Error(file, "isotropic." + mode, "is missing; " + why + " needs it");
+  return row->second;
+}
+
+const SaturationLaw& ParameterSet::saturation(const std::string& quantity, const std::string& why) const {
+  if (!shear) throw Error(file, "shear", "is missing; " + why + " needs it");
+  for (const auto& [name_, member] : quantities)
+    if (quantity == name_ && (*shear).*member) return *((*shear).*member);
+  throw Error(file, "shear." + quantity, "is missing; " + why + " needs it");
+}
+
+const ModuliLaws& ParameterSet::need_moduli(const std::string& why) const {
+  if (!moduli) throw Error(file, "moduli", "is missing; " + why + " needs it");
+  return *moduli;
+}
+
+const MemoryLaws& ParameterSet::need_memory(const std::string& why) const {
+  if (!memory) throw Error(file, "memory", "is missing; " + why + " needs it");
+  return *memory;
+}
+
+}  // namespace grainlaw::model

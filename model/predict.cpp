@@ -1,0 +1,178 @@
+#include "grainlaw/model/predict.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/model/point.hpp"
+#include "grainlaw/model/start.hpp"
+
+namespace grainlaw::model {
+
+namespace {
+
+/// A row further off its leg than this part of it is not on the path (a DEM run may overshoot by a time
+/// step).
+constexpr double off_path = 0.01;
+/// Warnings about lost and found contacts are listed up to this many.
+constexpr std::size_t most_events = 10;
+
+bool is_shear(const Leg& leg) { return leg.eps_dev[0] != leg.eps_dev[1]; }
+
+/// The law carries one direction of shear: every leg must keep the axes of the first that shears.
+void check_axes(const Path& path, const std::vector<Leg>& legs) {
+  const auto first = std::find_if(legs.begin(), legs.end(), is_shear);
+  for (auto leg = first; leg != legs.end(); ++leg)
+    if (is_shear(*leg) && !coaxial(leg->strain, first->strain))
+      throw Error(path.file, path.segments[static_cast<std::size_t>(leg - legs.begin())].key,
+                  "mode " + name_of(leg->mode) + " is not coaxial with " + name_of(first->mode) +
+                      " before it: the law carries stress and fabric along one direction of shear only");
+}
+
+std::vector<Sample> even_samples(const std::vector<Leg>& legs, int rows_per_leg) {
+  std::vector<Sample> samples{{0, 0}};
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    const int rows = legs[i].mode == Mode::relax ? 1 : rows_per_leg;
+    for (int row = 1; row <= rows; ++row) samples.push_back({i, static_cast<double>(row) / rows});
+  }
+  return samples;
+}
+
+void check_samples(const std::vector<Sample>& samples, std::size_t legs) {
+  Sample last;
+  for (const Sample& sample : samples) {
+    const bool ordered =
+        sample.leg > last.leg || (sample.leg == last.leg && sample.progress >= last.progress);
+    if (sample.leg >= legs || !(sample.progress >= 0 && sample.progress <= 1) || !ordered)
+      throw Error("", "samples",
+                  "must be points of the path in order, got leg " + std::to_string(sample.leg) +
+                      ", progress " + to_text(sample.progress));
+    last = sample;
+  }
+}
+
+/// A row of prediction_columns().
+void append_row(Record& record, const Law& law, const State& state, std::size_t leg) {
+  const Contacts contacts = contacts_of(law, state);
+  const auto value = [&](std::string_view column) {
+    if (column == "segment") return static_cast<double>(leg);
+    if (column == "eps_vol") return state.eps_vol;
+    if (column == "eps_dev") return state.eps_dev;
+    if (column == "nu") return state.nu;
+    if (column == "P") return state.P;
+    if (column == "sigma_dev") return state.sigma_dev;
+    if (column == "s_dev") return state.s_dev();
+    if (column == "F_v") return contacts.F_v;
+    if (column == "F_dev") return state.F_dev;
+    if (column == "C") return contacts.C;
+    if (column == "C_star") return contacts.C_star;
+    if (column == "f_NR") return contacts.f_NR;
+    if (column == "phi_J") return state.phi_J;
+    throw Error("the law has no column " + std::string(column));
+  };
+  std::vector<double> row;
+  for (const auto& column : record.columns()) row.push_back(value(column));
+  record.append(row);
+}
+
+std::string where(double nu, double eps_dev) {
+  return "at nu = " + to_text(nu) + ", eps_dev = " + to_text(eps_dev);
+}
+
+void tell_events(const std::vector<MaterialPoint::Event>& events, std::vector<std::string>& warnings) {
+  for (std::size_t i = 0; i < std::min(events.size(), most_events); ++i)
+    warnings.push_back((events[i].jammed ? "jams " : "unjams: loses its pressure ") +
+                       where(events[i].nu, events[i].eps_dev));
+  if (events.size() > most_events)
+    warnings.push_back("unjams and jams " + std::to_string(events.size() - most_events) + " times more");
+}
+
+/// Eq. 4.16 has no restoring term in dP*: reversals pump pressure.
+void tell_drift(const Law& law, const std::vector<Leg>& legs, std::vector<std::string>& warnings) {
+  if (form_of(law) != Form::coupled) return;
+  int reversals = 0;
+  double before = 0;
+  for (const Leg& leg : legs) {
+    const double now = leg.eps_dev[1] - leg.eps_dev[0];
+    if (now * before < 0) ++reversals;
+    if (now != 0) before = now;
+  }
+  if (reversals >= 4)
+    warnings.push_back(
+        "Eq. 4.16 gains pressure with every half cycle of shear without a bound (about 1 % at nu = 0.711); " +
+        std::to_string(reversals) + " reversals on this path");
+}
+
+/// Walks the legs and appends a row per sample.
+Status walk_legs(MaterialPoint& point, const Path& path, const std::vector<Leg>& legs,
+                 const std::vector<Sample>& samples, Record& record) {
+  auto next = samples.begin();
+  std::vector<double> fractions;
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    const Leg& leg = legs[i];
+    fractions.clear();
+    for (; next != samples.end() && next->leg == i; ++next) fractions.push_back(next->progress);
+    if (leg.mode == Mode::relax) point.relax();
+    Status status =
+        point.walk(leg.eps_vol[1] - leg.eps_vol[0], leg.eps_dev[1] - leg.eps_dev[0], fractions,
+                   [&](std::size_t, const State& state) { append_row(record, point.law(), state, i); });
+    if (status.failed()) {
+      status.message = path.segments[i].key + ": " + status.message;
+      return status;
+    }
+  }
+  const State& end = point.state();
+  if (!end.jammed)
+    return {Status::Code::unjammed, "carries no stress at the end: unjammed " + where(end.nu, end.eps_dev)};
+  return {};
+}
+
+}  // namespace
+
+Prediction predict(const ParameterSet& parameters, const Path& path, const std::vector<Sample>& samples,
+                   const PredictOptions& options) {
+  const StartState start = start_of(parameters, path, options.form);
+  const std::vector<Leg> legs = path.legs(start.state.nu);
+  check_axes(path, legs);
+  check_samples(samples, legs.size());
+  Prediction prediction{Record(prediction_columns()), start.echo, start.warnings, {}};
+  MaterialPoint point(start.law, start.state, {options.rtol, options.atol});
+  prediction.status = walk_legs(point, path, legs, samples, prediction.record);
+  tell_events(point.events(), prediction.warnings);
+  tell_drift(start.law, legs, prediction.warnings);
+  return prediction;
+}
+
+Prediction predict(const ParameterSet& parameters, const Path& path, const PredictOptions& options) {
+  if (options.rows_per_leg < 1)
+    throw Error("", "rows_per_leg", "must be >= 1, got " + std::to_string(options.rows_per_leg));
+  const StartState start = start_of(parameters, path, options.form);
+  return predict(parameters, path, even_samples(path.legs(start.state.nu), options.rows_per_leg), options);
+}
+
+std::vector<Sample> samples_of(const Record& record, const Path& path, double nu_start) {
+  const std::vector<Leg> legs = path.legs(nu_start);
+  const auto &segment = record["segment"], &eps_vol = record["eps_vol"], &eps_dev = record["eps_dev"];
+  std::vector<Sample> samples;
+  for (std::size_t row = 0; row < record.rows(); ++row) {
+    const auto fail = [&](const std::string& what) {
+      throw Error(path.file, "", "row " + std::to_string(row + 1) + " of the record " + what);
+    };
+    if (!(segment[row] >= 0 && segment[row] < static_cast<double>(legs.size())))
+      fail("has segment " + to_text(segment[row]) + "; the path has " + std::to_string(legs.size()));
+    const auto i = static_cast<std::size_t>(segment[row]);
+    const Leg& leg = legs[i];
+    const double volume = leg.eps_vol[1] - leg.eps_vol[0], shear = leg.eps_dev[1] - leg.eps_dev[0];
+    double progress = 1;
+    if (volume != 0 || shear != 0)
+      progress = std::abs(volume) > std::abs(shear) ? (eps_vol[row] - leg.eps_vol[0]) / volume
+                                                    : (eps_dev[row] - leg.eps_dev[0]) / shear;
+    if (!(progress >= -off_path && progress <= 1 + off_path))
+      fail("is not on segment " + std::to_string(i) + " of the path: eps_vol = " + to_text(eps_vol[row]) +
+           ", eps_dev = " + to_text(eps_dev[row]));
+    samples.push_back({i, std::clamp(progress, 0.0, 1.0)});
+  }
+  return samples;
+}
+
+}  // namespace grainlaw::model
