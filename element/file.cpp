@@ -32,14 +32,13 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
   std::filesystem::path aside = file;
   aside += ".part" + std::to_string(::getpid());
   const int descriptor = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0)
-    throw Error(file.string(), "", std::string("cannot be written: ") + std::strerror(errno));
+  if (descriptor < 0) throw Error::cannot_write(file.string(), std::strerror(errno));
   int failure = write_all(descriptor, text);
   if (::close(descriptor) != 0 && failure == 0) failure = errno;
   if (failure == 0 && ::rename(aside.c_str(), file.c_str()) != 0) failure = errno;
   if (failure != 0) {
     ::unlink(aside.c_str());
-    throw Error(file.string(), "", std::string("cannot be written: ") + std::strerror(failure));
+    throw Error::cannot_write(file.string(), std::strerror(failure));
   }
 }
 
