@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "grainlaw/dem/scene.hpp"
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/material.hpp"
 #include "grainlaw/element/path.hpp"
@@ -33,18 +34,18 @@ struct CampaignTest {
   std::optional<Origin> from;       ///< none: the prepared packing
   std::vector<std::int64_t> seeds;  ///< a subset of the campaign's
   Path path;
-  Json measure;     ///< as in a scene, every default filled in; without the snapshots that other tests need
-  double nu_start;  ///< nominal volume fraction it starts from
-  std::string key;  ///< where it stands in its file ("tests[2]")
+  dem::Measure measure;  ///< without the snapshots that other tests need
+  double nu_start;       ///< nominal volume fraction it starts from
+  std::string key;       ///< where it stands in its file ("tests[2]")
 };
 
 struct Campaign {
   std::string file;  ///< for error messages
   std::string name;
   Material material;
-  Json preparation;  ///< as in a scene, every default filled in, without `seed`
+  dem::NewPacking preparation;  ///< its seed means nothing: every test runs once per seed
   std::vector<std::int64_t> seeds;
-  Json measure;  ///< the tests' defaults, filled in
+  dem::Measure measure;  ///< the tests' defaults
   std::vector<CampaignTest> tests;
 
   /// Reads CAMPAIGN.json: lists of `from.nu` are written out as tests NAME-x, states are looked up on the

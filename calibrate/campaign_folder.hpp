@@ -1,0 +1,35 @@
+// The output directory of a campaign: taken only if it is new, empty, or holds this very campaign; held by
+// one process.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/calibrate/lock_file.hpp"
+
+namespace grainlaw::calibrate {
+
+class CampaignFolder {
+ public:
+  enum class Use { fresh, resume };
+
+  /// Makes `dir`, locks it and writes campaign.json. Throws Error, and changes nothing, if `dir` holds
+  /// something else: another campaign (and where it differs), files of an unknown kind, or, for Use::fresh,
+  /// this campaign already. Use::resume takes a new or empty directory as well.
+  CampaignFolder(const Campaign& campaign, std::filesystem::path dir, Use use);
+
+  const std::filesystem::path& dir() const { return dir_; }
+  /// records/NAME, and records/NAME.part while it is being made.
+  std::filesystem::path record(const std::string& name) const { return dir_ / "records" / name; }
+  std::filesystem::path part(const std::string& name) const { return dir_ / "records" / (name + ".part"); }
+  /// Whether the record is complete. Throws Error if its directory is there but one of its files is not.
+  bool has_record(const std::string& name) const;
+
+ private:
+  std::filesystem::path dir_;
+  std::unique_ptr<LockFile> lock_;
+};
+
+}  // namespace grainlaw::calibrate

@@ -1,0 +1,286 @@
+#include "grainlaw/calibrate/run_campaign.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <thread>
+#include <variant>
+
+#include "grainlaw/calibrate/campaign_schedule.hpp"
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/file.hpp"
+
+namespace grainlaw::calibrate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto look_every = std::chrono::milliseconds(100);
+constexpr double first_estimate_after = 2.0;  // s; before, the rate is mostly start-up
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// What a running job tells about itself.
+struct Pulse {
+  Clock::time_point begin;
+  double fraction = 0;
+  std::string stage;
+};
+
+struct Failure {
+  std::string error;
+  std::exception_ptr unwritable;  ///< set where the disk, not the test, is the reason
+};
+
+/// How a job ended.
+struct Ending {
+  std::size_t job;
+  std::variant<dem::RunSummary, Failure> outcome;
+};
+
+class Runner {
+ public:
+  Runner(const Campaign& campaign, const CampaignFolder& folder, const RunOptions& options)
+      : campaign_(campaign),
+        folder_(folder),
+        options_(options),
+        jobs_(plan(campaign)),
+        schedule_(jobs_),
+        pulses_(jobs_.size()) {}
+
+  CampaignResult run();
+
+ private:
+  void clear();
+  bool look();
+  void halt();
+  void work();
+  Ending run_job(std::size_t job);
+  dem::RunSummary run_test(std::size_t job);
+  void handle(const Ending& ending);
+  void handle_failure(std::size_t job, const Failure& failure);
+  CampaignProgress progress() const;
+  void write_failures() const;
+  bool halted() const { return halt_.load(std::memory_order_relaxed); }
+
+  const Campaign& campaign_;
+  const CampaignFolder& folder_;
+  const RunOptions& options_;
+  const std::vector<Job> jobs_;
+  CampaignResult result_;
+  Clock::time_point begin_ = Clock::now();
+  std::exception_ptr unwritable_;
+  double reused_work_ = 0;   ///< estimated particle-steps
+  double actual_steps_ = 0;  ///< particle-steps of jobs that ended
+  double ended_busy_s_ = 0;  ///< what they took
+
+  std::atomic<bool> halt_{false};
+  mutable std::mutex mutex_;  ///< guards all below
+  std::condition_variable changed_;
+  Schedule schedule_;
+  std::vector<Pulse> pulses_;
+  std::deque<Ending> endings_;
+};
+
+/// Removes what an interrupted run left; finds the records that are there.
+void Runner::clear() {
+  for (std::size_t i = 0; i < jobs_.size(); ++i) {
+    fs::remove_all(folder_.part(jobs_[i].record));
+    if (!folder_.has_record(jobs_[i].record)) continue;
+    schedule_.reuse(i);
+    reused_work_ += jobs_[i].particle_steps;
+    ++result_.reused;
+  }
+}
+
+CampaignResult Runner::run() {
+  clear();
+  std::vector<std::jthread> workers;
+  try {
+    const std::size_t open = jobs_.size() - result_.reused;
+    for (std::size_t i = 0; i < std::min(options_.workers, open); ++i)
+      workers.emplace_back([this] { work(); });
+    while (look()) {
+    }
+  } catch (...) {
+    halt();
+    throw;
+  }
+  workers.clear();
+  result_.wall_s = seconds_since(begin_);
+  if (unwritable_) std::rethrow_exception(unwritable_);
+  write_failures();
+  return result_;
+}
+
+/// Deals with what has happened since the last look; false when all is over.
+bool Runner::look() {
+  using State = Schedule::State;
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, look_every, [&] { return !endings_.empty() || schedule_.over(); });
+  std::deque<Ending> endings;
+  endings.swap(endings_);
+  const bool over =
+      endings.empty() && (schedule_.over() || (halted() && schedule_.count(State::running) == 0));
+  lock.unlock();
+  for (const Ending& ending : endings) handle(ending);
+  if (over) return false;
+  if (options_.hooks.stop != nullptr && options_.hooks.stop->load(std::memory_order_relaxed)) {
+    result_.stopped = true;
+    halt();
+  }
+  if (options_.hooks.progress && !halted()) options_.hooks.progress(progress());
+  return true;
+}
+
+void Runner::halt() {
+  {
+    const std::lock_guard lock(mutex_);
+    halt_ = true;
+  }
+  changed_.notify_all();
+}
+
+void Runner::work() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    std::optional<std::size_t> job;
+    changed_.wait(lock, [&] { return halted() || schedule_.over() || (job = schedule_.take()).has_value(); });
+    if (!job) return;
+    pulses_[*job].begin = Clock::now();
+    lock.unlock();
+    Ending ending = run_job(*job);
+    lock.lock();
+    endings_.push_back(std::move(ending));
+    changed_.notify_all();
+  }
+}
+
+Ending Runner::run_job(std::size_t job) {
+  try {
+    return {job, run_test(job)};
+  } catch (const Error& error) {
+    return {job, Failure{error.what(), error.unwritable() ? std::current_exception() : nullptr}};
+  } catch (const fs::filesystem_error& error) {
+    return {job, Failure{error.what(), std::current_exception()}};
+  } catch (const std::bad_alloc&) {
+    return {job, Failure{"out of memory", nullptr}};
+  } catch (const std::exception& error) {
+    return {job, Failure{error.what(), nullptr}};
+  }
+}
+
+dem::RunSummary Runner::run_test(std::size_t index) {
+  const Job& job = jobs_[index];
+  const fs::path part = folder_.part(job.record);
+  fs::create_directory(part);  // before the scene is read: its snapshot is looked for from here
+  const dem::Scene scene = dem::Scene::read(Reader(job.scene, job.record), part);
+  const auto progress = [this, index](double fraction, const std::string& stage) {
+    const std::lock_guard lock(mutex_);
+    pulses_[index].fraction = fraction;
+    pulses_[index].stage = stage;
+  };
+  const dem::RunSummary summary = options_.run_test(scene, part, {progress, &halt_});
+  if (summary.stopped)
+    fs::remove_all(part);
+  else
+    fs::rename(part, folder_.record(job.record));
+  return summary;
+}
+
+void Runner::handle(const Ending& ending) {
+  if (const auto* failure = std::get_if<Failure>(&ending.outcome))
+    return handle_failure(ending.job, *failure);
+  const auto& summary = std::get<dem::RunSummary>(ending.outcome);
+  {
+    const std::lock_guard lock(mutex_);
+    if (summary.stopped)
+      schedule_.fail(ending.job);
+    else
+      schedule_.finish(ending.job);
+    changed_.notify_all();
+  }
+  if (summary.stopped) return;
+  ++result_.finished;
+  ended_busy_s_ += summary.wall_s;
+  actual_steps_ += static_cast<double>(summary.particle_steps);
+  if (options_.hooks.finished) options_.hooks.finished({jobs_[ending.job].record, summary}, progress());
+}
+
+void Runner::handle_failure(std::size_t job, const Failure& failure) {
+  FailedJob failed{jobs_[job].record, failure.error, {}};
+  {
+    const std::lock_guard lock(mutex_);
+    for (const std::size_t i : schedule_.fail(job)) failed.skipped.push_back(jobs_[i].record);
+    if (failure.unwritable) halt_ = true;
+    changed_.notify_all();
+  }
+  if (failure.unwritable) {
+    std::error_code ignored;
+    fs::remove_all(folder_.part(failed.record), ignored);
+    if (!unwritable_) unwritable_ = failure.unwritable;
+    return;
+  }
+  result_.failed.push_back(failed);
+  if (options_.hooks.failed) options_.hooks.failed(failed);
+}
+
+CampaignProgress Runner::progress() const {
+  const std::lock_guard lock(mutex_);
+  CampaignProgress now;
+  now.jobs = jobs_.size();
+  double total = 0, done = 0, running = 0, busy_s = ended_busy_s_;
+  for (std::size_t i = 0; i < jobs_.size(); ++i) {
+    const double work = jobs_[i].particle_steps;
+    const auto state = schedule_.state(i);
+    if (state == Schedule::State::failed || state == Schedule::State::skipped) continue;
+    total += work;
+    if (state == Schedule::State::done) done += work;
+    if (state == Schedule::State::running) {
+      running += work * pulses_[i].fraction;
+      busy_s += seconds_since(pulses_[i].begin);
+      now.running.push_back(jobs_[i].record + (pulses_[i].stage.empty() ? "" : ": " + pulses_[i].stage));
+    }
+  }
+  now.finished = schedule_.count(Schedule::State::done);
+  now.fraction = total > 0 ? (done + running) / total : 1;
+  const double elapsed = seconds_since(begin_);
+  const double made = done + running - reused_work_;
+  if (elapsed < first_estimate_after || !(made > 0)) return now;
+  now.rate = (actual_steps_ + running) / elapsed;
+  // The rate of one worker in the units of the estimates, so that a bad estimate of a relaxation cancels.
+  now.seconds_left = schedule_.time_left(options_.workers, made / busy_s,
+                                         [&](std::size_t i) { return pulses_[i].fraction; });
+  return now;
+}
+
+void Runner::write_failures() const {
+  const fs::path file = folder_.dir() / "failures.json";
+  if (result_.failed.empty()) {
+    fs::remove(file);
+    return;
+  }
+  Json list = Json::array();
+  for (const FailedJob& failed : result_.failed)
+    list.push_back({{"record", failed.record}, {"error", failed.error}, {"skipped", failed.skipped}});
+  write_file(file, Json{{"failures", list}}.dump(2) + "\n");
+}
+
+}  // namespace
+
+CampaignResult run_campaign(const Campaign& campaign, const CampaignFolder& folder,
+                            const RunOptions& options) {
+  return Runner(campaign, folder, options).run();
+}
+
+}  // namespace grainlaw::calibrate
