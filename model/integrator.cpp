@@ -122,6 +122,10 @@ Integrator::Handles::Handles(int size_, Tolerance tolerance)
   if (failed == 0) failed = CVodeSetUserData(m, this);
   if (failed == 0) failed = CVodeSetLinearSolver(m, solver.get(), matrix.get());
   if (failed == 0) failed = CVodeSetJacFn(m, jacobian);
+  // A Jacobian from where the law was stiffer (P* small) makes Newton's corrections small and looks like
+  // convergence: take it anew in every step; it costs little.
+  if (failed == 0) failed = CVodeSetJacEvalFrequency(m, 1);
+  if (failed == 0) failed = CVodeSetLSetupFrequency(m, 1);
   if (failed == 0) failed = CVodeSetMaxNumSteps(m, most_steps);
   if (failed == 0) failed = CVodeSetNoInactiveRootWarn(m);
   if (failed != 0) throw Error("the integrator cannot be set up: " + complaint);

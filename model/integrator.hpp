@@ -10,7 +10,8 @@
 
 namespace grainlaw::model {
 
-/// Asked errors: |error of y| <= rtol |y| + atol at every point handed out.
+/// Asked errors of the solution along a path: rtol relative to its size (L2 over the path), atol where it is
+/// smaller.
 struct Tolerance {
   double rtol = 1e-8;
   double atol = 1e-12;

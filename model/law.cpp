@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "grainlaw/element/error.hpp"
+#include "grainlaw/model/status.hpp"
 
 namespace grainlaw::model {
 
@@ -15,18 +15,19 @@ constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 /// smallest_pressure.
 constexpr double first_pressure = 10 * smallest_pressure;
 
-/// |1 - q x/x_sat|, the scale of S and S_F in a direction. At saturation there is no elastic part to
-/// scale: 1.
+/// |1 - q x/x_sat|, the scale of S and S_F in a direction. At saturation there is no elastic part: plastic
+/// from the start. The floor keeps that limit finite; an elastic part this short (in strain, it over beta) is
+/// none.
 double distance_scale(double q, double x, double x_sat) {
-  const double distance = std::abs(1 - q * x / x_sat);
-  return distance < 1e-9 ? 1.0 : distance;
+  constexpr double floor = 1e-6;
+  return std::max(std::abs(1 - q * x / x_sat), floor);
 }
 
 std::optional<std::string> out_of_range(const char* name, const Saturation& law, double nu,
                                         bool zero_allowed) {
   const double value = saturation(law, nu);
   if (value > 0 || (zero_allowed && value == 0)) return std::nullopt;
-  return std::string(name) + " is " + to_text(value) + " at nu = " + to_text(nu) + " and must be " +
+  return std::string(name) + " is " + shown(value) + " at nu = " + shown(nu) + " and must be " +
          (zero_allowed ? ">= 0" : "> 0");
 }
 

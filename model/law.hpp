@@ -28,9 +28,8 @@ struct Stretch {
 /// What a direction of shear remembers of its start. A direction begins at the start of a path, at a
 /// reversal, after a relaxation, and with the first shear after a purely isotropic stretch.
 struct Direction {
-  double q = 0;  ///< +1 or -1; 0: the next shear begins a new one
-  double S_I =
-      1;  ///< |S| at its start, S = 1 - q s/s_max (Eq. 4.16); 1 where S was 0: plastic from the start
+  double q = 0;          ///< +1 or -1; 0: the next shear begins a new one
+  double S_I = 1;        ///< |S| at its start, S = 1 - q s/s_max (Eq. 4.16), at least 1e-6
   double S_F_I = 1;      ///< the same of 1 - q F_dev/F_max
   double s_0 = 0;        ///< s_dev at its start (Eq. 2.17)
   double F_0 = 0;        ///< F_dev at its start (Eq. 2.18)

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
-
-#include "grainlaw/element/error.hpp"
 
 namespace grainlaw::model {
 
@@ -127,7 +126,7 @@ Status MaterialPoint::walk(double eps_vol, double eps_dev, std::span<const doubl
       walk_unjammed(walk);
   }
   if (status.failed()) {
-    status.message += " (nu = " + to_text(state_.nu) + ", eps_dev = " + to_text(state_.eps_dev) + ")";
+    status.message += " (nu = " + shown(state_.nu) + ", eps_dev = " + shown(state_.eps_dev) + ")";
     state_ = before;
     events_.resize(events_before);
     return status;

@@ -76,7 +76,7 @@ void append_row(Record& record, const Law& law, const State& state, std::size_t 
 }
 
 std::string where(double nu, double eps_dev) {
-  return "at nu = " + to_text(nu) + ", eps_dev = " + to_text(eps_dev);
+  return "at nu = " + shown(nu) + ", eps_dev = " + shown(eps_dev);
 }
 
 void tell_events(const std::vector<MaterialPoint::Event>& events, std::vector<std::string>& warnings) {

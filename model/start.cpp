@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/model/status.hpp"
 
 namespace grainlaw::model {
 
@@ -124,10 +125,10 @@ void Filling::settle() {
   const double begin = unjamming_density(result_.law);
   state.jammed = state.P > smallest_pressure && state.nu > begin;
   if (state.jammed) return;
-  const std::string at = "start: unjammed at nu = " + to_text(state.nu);
+  const std::string at = "start: unjammed at nu = " + shown(state.nu);
   if (state.P > smallest_pressure)
     result_.warnings.push_back(at + ", where the contact law has no contacts (it begins at nu = " +
-                               to_text(begin) + "); P = " + to_text(state.P) + " is not used");
+                               shown(begin) + "); P = " + shown(state.P) + " is not used");
   else if (state.sigma_dev != 0 || state.F_dev != 0)
     result_.warnings.push_back(at + "; sigma_dev and F_dev are not used");
   const double phi_J = std::max(state.phi_J, state.nu);

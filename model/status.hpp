@@ -1,6 +1,7 @@
 // How a walk along a path ended, in a word and in a sentence.
 #pragma once
 
+#include <cstdio>
 #include <string>
 
 namespace grainlaw::model {
@@ -27,6 +28,13 @@ inline std::string name_of(Status::Code code) {
       return "failed";
   }
   return "";
+}
+
+/// A number for a sentence: six digits.
+inline std::string shown(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
 }
 
 }  // namespace grainlaw::model
