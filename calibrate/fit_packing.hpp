@@ -1,0 +1,58 @@
+// Fits of the packing laws over volume fraction: C*(nu) of Eq. 2.11, phi_r(nu) of Eq. 2.12, p(nu) of
+// Eq. 2.14. One row of Table 2.1 (isotropic.MODE of a parameter set) from measured states of one mode.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "grainlaw/calibrate/fit_problem.hpp"
+
+namespace grainlaw::calibrate {
+
+/// Values to hold a parameter at if the data cannot determine it, by name; empty where nobody knows any.
+using KnownValues = std::map<std::string, double>;
+
+/// A measured state, all numbers over one volume fraction. Errors are standard errors, 0 where unknown.
+struct PackingState {
+  double nu = 0;
+  double P = 0;       ///< P*, over k*
+  double C = 0;       ///< M4/N
+  double C_star = 0;  ///< M4/N4
+  double phi_r = 0;   ///< 1 - N4/N
+  double P_error = 0, C_star_error = 0, phi_r_error = 0;
+};
+
+/// States of one record.
+struct PackingSeries {
+  std::string test;   ///< name of the record
+  std::string group;  ///< its seed: series of one group are not independent
+  std::vector<PackingState> states;
+};
+
+/// C* = C0 + C1 (nu/nu_c - 1)^alpha, C0 = 6 held, or free (`free_C0`). Parameters C0, C1, alpha,
+/// nu_c_contacts. nu_c_contacts stays below the lowest nu of the data, where the law ends.
+FitProblem contacts_problem(const std::vector<PackingSeries>& series, Points points, const KnownValues& known,
+                            bool free_C0 = false);
+
+/// phi_r = phi_c exp[-phi_v (nu/nu_c - 1)] at a given nu_c, that of the contacts. Parameters phi_c, phi_v,
+/// nu_c_contacts (held; its error goes into the errors of the others).
+FitProblem rattlers_problem(const std::vector<PackingSeries>& series, Points points, const KnownValues& known,
+                            double nu_c_contacts, double nu_c_error);
+
+/// p = p0 (nu C/nu_c) e (1 - gamma_p e), e = ln(nu/nu_c), with the measured C: that p is proportional to the
+/// number of contacts is not in question, so an error of the fitted C must not be made up for by p0.
+/// Parameters p0, gamma_p, nu_c.
+FitProblem pressure_problem(const std::vector<PackingSeries>& series, Points points,
+                            const KnownValues& known);
+
+/// A row of Table 2.1.
+struct PackingFit {
+  FitResult contacts, contacts_free_C0, rattlers, pressure;
+  FitProblem contacts_law, contacts_free_C0_law, rattlers_law, pressure_law;  ///< as fitted, with their data
+};
+
+/// All of them; never throws for want of data, see FitEstimate::determined.
+PackingFit fit_packing(const std::vector<PackingSeries>& series, Points points, const KnownValues& known);
+
+}  // namespace grainlaw::calibrate
