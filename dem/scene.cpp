@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::int64_t fewest_grains = 8, most_grains = 10'000'000;
 constexpr std::int64_t largest_seed = std::int64_t{1} << 53;  ///< JSON readers keep whole numbers up to here
+constexpr std::int64_t most_frames = 1'000'000'000;
 constexpr std::int64_t most_rows = 100'000, most_segments = 1'000'000;
 constexpr double densest_gas = 0.45;   ///< random placement without overlap slows down without limit beyond
 constexpr double largest_step = 0.2;   ///< of the smallest contact duration
@@ -133,11 +134,13 @@ FromSnapshot FromSnapshot::read(Reader reader, const std::filesystem::path& scen
   if (from.snapshot.empty()) reader.fail("snapshot", "must be the path of a snapshots.h5, got \"\"");
   from.file = scene_dir / from.snapshot;
   from.choice.nu = reader.maybe_number("nu", inside(0, 1));
-  constexpr std::int64_t most_frames = 1'000'000'000;
-  if (reader.has("frame"))
-    from.choice.frame = static_cast<std::uint64_t>(reader.integer("frame", 0, most_frames));
-  if (reader.has("segment"))
-    from.choice.segment = static_cast<std::uint64_t>(reader.integer("segment", 0, most_segments - 1));
+  const auto index = [&](std::string_view key, std::int64_t most) -> std::optional<std::uint64_t> {
+    const std::int64_t value = reader.integer(key, 0, most, -1);
+    if (value < 0) return std::nullopt;
+    return static_cast<std::uint64_t>(value);
+  };
+  from.choice.frame = index("frame", most_frames);
+  from.choice.segment = index("segment", most_segments - 1);
   if (from.choice.frame && from.choice.nu)
     reader.fail("frame", "redundant: nu already chooses the state; give one");
   if (from.choice.frame && from.choice.segment)

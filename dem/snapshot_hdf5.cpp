@@ -10,24 +10,19 @@ std::mutex& library_mutex() {
   return mutex;
 }
 
-struct Reason {
-  std::string innermost;
-  bool disk_full = false;
-};
-
-herr_t collect(unsigned, const H5E_error2_t* entry, void* data) {
-  auto& reason = *static_cast<Reason*>(data);
-  const std::string text = entry->desc != nullptr ? entry->desc : "";
-  if (reason.innermost.empty()) reason.innermost = text;
-  if (text.find("No space left") != std::string::npos || text.find("quota exceeded") != std::string::npos ||
-      text.find("File too large") != std::string::npos)
-    reason.disk_full = true;
+/// Takes the first description, which is that of the innermost function.
+herr_t keep_first(unsigned, const H5E_error2_t* entry, void* data) {
+  auto& innermost = *static_cast<std::string*>(data);
+  if (innermost.empty() && entry->desc != nullptr) innermost = entry->desc;
   return 0;
 }
 
 }  // namespace
 
 Session::Session() : lock_(library_mutex()) {
+  // HDF5 1.10 loses a piece of memory where it meets a damaged header, and complains on stderr about it when
+  // it cleans up at the end of the program. We leave nothing open that would need cleaning.
+  [[maybe_unused]] static const herr_t no_cleaning = H5dont_atexit();
   H5Eget_auto2(H5E_DEFAULT, &print_, &print_data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
@@ -35,10 +30,9 @@ Session::Session() : lock_(library_mutex()) {
 Session::~Session() { H5Eset_auto2(H5E_DEFAULT, print_, print_data_); }
 
 void fail(const std::string& what) {
-  Reason reason;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, collect, &reason);
-  if (reason.disk_full) throw Failure(what + ": no space left on the disk");
-  throw Failure(reason.innermost.empty() ? what : what + " (HDF5: " + reason.innermost + ")");
+  std::string innermost;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &innermost);
+  throw Failure(innermost.empty() ? what : what + " (HDF5: " + innermost + ")");
 }
 
 }  // namespace grainlaw::dem::hdf5

@@ -27,13 +27,17 @@ class Session {
   void* print_data_ = nullptr;
 };
 
+/// How often a header is read while another process may be writing it. The library's own choice, 100, waits
+/// longer each time and so hangs for ever on a damaged file.
+inline constexpr unsigned read_attempts = 3;
+
 /// A failed call; what() is a clause in words without the file's name, which the caller adds.
 class Failure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Throws Failure("<what> (HDF5: <innermost reason>)"), or a plain sentence where the disk is full.
+/// Throws Failure("<what> (HDF5: <innermost reason>)").
 [[noreturn]] void fail(const std::string& what);
 
 /// An identifier and its closing function.

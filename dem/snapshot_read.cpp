@@ -16,7 +16,6 @@ using hdf5::Failure;
 
 const std::string grains = "/particles/grains/";
 constexpr hsize_t most_grains = 10'000'000;
-constexpr int read_attempts = 3;  ///< of a header, while another process may be writing it
 
 std::string shown(const Shape& shape) {
   std::string text;
@@ -28,7 +27,7 @@ std::string shown(const Shape& shape) {
 /// being written, and its frames are complete up to the last step.
 hdf5::File open_file(const std::filesystem::path& file) {
   const hdf5::Properties access(H5Pcreate(H5P_FILE_ACCESS), "cannot make file properties");
-  hdf5::check(H5Pset_metadata_read_attempts(access, read_attempts), "cannot set read attempts");
+  hdf5::check(H5Pset_metadata_read_attempts(access, hdf5::read_attempts), "cannot set read attempts");
   const std::string what = "is not a snapshot file, or is cut short or damaged";
   try {
     return {H5Fopen(file.c_str(), H5F_ACC_RDONLY, access), what};
@@ -37,6 +36,10 @@ hdf5::File open_file(const std::filesystem::path& file) {
     if (id < 0) throw failure;
     return {id, what};
   }
+}
+
+hdf5::Dataset open_dataset(hid_t file, const std::string& name) {
+  return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), "dataset " + name + " is missing or damaged"};
 }
 
 struct Source {
@@ -52,7 +55,7 @@ class Series {
  public:
   Series(const Source& source, const std::string& name, H5T_class_t kind, const Shape& shape, bool frames)
       : name_(name),
-        dataset_(H5Dopen2(source.file, name.c_str(), H5P_DEFAULT), "has no dataset " + name),
+        dataset_(open_dataset(source.file, name)),
         bytes_(source.bytes),
         shape_(shape_of(dataset_, name)) {
     const hdf5::Type type(H5Dget_type(dataset_), "cannot read " + name);
@@ -125,8 +128,7 @@ class Series {
 Source open_source(const std::filesystem::path& file) {
   Source source{open_file(file), std::filesystem::file_size(file), 0, 0};
   const auto length_of = [&](const std::string& name) {
-    const hdf5::Dataset dataset(H5Dopen2(source.file, name.c_str(), H5P_DEFAULT),
-                                "is not a snapshot file of grainlaw: has no dataset " + name);
+    const hdf5::Dataset dataset = open_dataset(source.file, name);
     const Shape shape = Series::shape_of(dataset, name);
     if (shape.size() != 1)
       throw Failure(name + ": must have one dimension, got " + std::to_string(shape.size()));

@@ -1,5 +1,11 @@
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <vector>
 
@@ -23,30 +29,28 @@ void attach_text(hid_t object, const char* name, const std::vector<std::string>&
   for (const auto& text : texts) width = std::max(width, text.size());
   std::string padded;
   for (const auto& text : texts) padded += text + std::string(width - text.size(), '\0');
-  const hdf5::Type type(H5Tcopy(H5T_C_S1), "cannot make a text type");
-  hdf5::check(H5Tset_size(type, width), "cannot size a text type");
-  hdf5::check(H5Tset_strpad(type, H5T_STR_NULLPAD), "cannot pad a text type");
+  const hdf5::Type type(H5Tcopy(H5T_C_S1), "making a text type");
+  hdf5::check(H5Tset_size(type, width), "sizing a text type");
+  hdf5::check(H5Tset_strpad(type, H5T_STR_NULLPAD), "padding a text type");
   const hsize_t count = texts.size();
   const hdf5::Space space(count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr),
-                          "cannot make a shape");
+                          "making a shape");
   const hdf5::Attribute attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT),
-                                  std::string("cannot write attribute ") + name);
-  hdf5::check(H5Awrite(attribute, type, padded.data()), std::string("cannot write attribute ") + name);
+                                  std::string("attribute ") + name);
+  hdf5::check(H5Awrite(attribute, type, padded.data()), std::string("attribute ") + name);
 }
 
 void attach_integers(hid_t object, const char* name, const std::vector<int>& values) {
   const hsize_t count = values.size();
   const hdf5::Space space(count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr),
-                          "cannot make a shape");
+                          "making a shape");
   const hdf5::Attribute attribute(H5Acreate2(object, name, H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT),
-                                  std::string("cannot write attribute ") + name);
-  hdf5::check(H5Awrite(attribute, H5T_NATIVE_INT, values.data()),
-              std::string("cannot write attribute ") + name);
+                                  std::string("attribute ") + name);
+  hdf5::check(H5Awrite(attribute, H5T_NATIVE_INT, values.data()), std::string("attribute ") + name);
 }
 
 hdf5::Group create_group(hid_t parent, const char* name) {
-  return {H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-          std::string("cannot write group ") + name};
+  return {H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), std::string("group ") + name};
 }
 
 /// A dataset of this shape; where `frames` is true, of none yet and any number of frames of this shape.
@@ -59,20 +63,41 @@ hdf5::Dataset create_dataset(hid_t parent, const char* name, hid_t type, Shape s
     chunk.insert(chunk.begin(), 1);
   }
   const int rank = static_cast<int>(shape.size());
-  const hdf5::Space space(H5Screate_simple(rank, shape.data(), most.data()), "cannot make a shape");
-  const hdf5::Properties layout(H5Pcreate(H5P_DATASET_CREATE), "cannot make a layout");
-  hdf5::check(H5Pset_chunk(layout, rank, chunk.data()), "cannot set chunks");
-  hdf5::check(H5Pset_fletcher32(layout), "cannot set checksums");
+  const hdf5::Space space(H5Screate_simple(rank, shape.data(), most.data()), "making a shape");
+  const hdf5::Properties layout(H5Pcreate(H5P_DATASET_CREATE), "making a layout");
+  hdf5::check(H5Pset_chunk(layout, rank, chunk.data()), "setting chunks");
+  hdf5::check(H5Pset_fletcher32(layout), "setting checksums");
   return {H5Dcreate2(parent, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT),
-          std::string("cannot write dataset ") + name};
+          std::string("dataset ") + name};
 }
 
 /// Format of HDF5 1.10: it has checksums in every header and can be appended to in an order that keeps it
 /// readable throughout.
 hdf5::Properties file_access() {
-  hdf5::Properties access(H5Pcreate(H5P_FILE_ACCESS), "cannot make file properties");
-  hdf5::check(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), "cannot choose the format");
+  hdf5::Properties access(H5Pcreate(H5P_FILE_ACCESS), "making file properties");
+  hdf5::check(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), "choosing the format");
+  hdf5::check(H5Pset_metadata_read_attempts(access, hdf5::read_attempts), "setting read attempts");
   return access;
+}
+
+/// Room that headers and indices of one more frame may take beside its numbers.
+constexpr std::size_t header_room = 128 * 1024;
+
+/// Makes sure that `bytes` more fit into the file, and keeps the room. HDF5 1.10 does not survive a full
+/// disk: it leaves a file that cannot be read and crashes when it closes, so it must never meet one. What is
+/// left of the room goes back when HDF5 closes the file.
+void reserve(const std::filesystem::path& file, std::size_t bytes) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  struct stat status {};
+  int failure = descriptor < 0 || ::fstat(descriptor, &status) != 0 ? errno : 0;
+  if (failure == 0) {
+    do failure = ::posix_fallocate(descriptor, status.st_size, static_cast<off_t>(bytes));
+    while (failure == EINTR);
+    if (failure == EOPNOTSUPP || failure == EINVAL) failure = 0;  // a file system that cannot say
+    if (failure != 0 && ::ftruncate(descriptor, status.st_size) != 0) failure = errno;
+  }
+  if (descriptor >= 0) ::close(descriptor);
+  if (failure != 0) throw Error::cannot_write(file.string(), std::strerror(failure));
 }
 
 void write_header(hid_t file) {
@@ -89,7 +114,7 @@ void write_header(hid_t file) {
 /// A time-dependent element. All elements share one `step` and one `time`, those of the box.
 hdf5::Dataset create_element(const hdf5::Group& element, const hdf5::Group& edges, hid_t type, Shape shape) {
   for (const char* name : {"step", "time"})
-    hdf5::check(H5Lcreate_hard(edges, name, element, name, H5P_DEFAULT, H5P_DEFAULT), "cannot link time");
+    hdf5::check(H5Lcreate_hard(edges, name, element, name, H5P_DEFAULT, H5P_DEFAULT), "linking time");
   return create_dataset(element, "value", type, std::move(shape), true);
 }
 
@@ -114,8 +139,7 @@ void write_particles(hid_t file, const hdf5::Group& grains, const hdf5::Group& e
   attach_text(create_element(velocity, edges, H5T_IEEE_F64LE, {count, 3}), "unit", {"mm us-1"});
   const auto radii = create_dataset(grains, "radius", H5T_IEEE_F64LE, {count}, false);
   attach_text(radii, "unit", {"mm"});
-  hdf5::check(H5Dwrite(radii, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, radius.data()),
-              "cannot write radius");
+  hdf5::check(H5Dwrite(radii, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, radius.data()), "radius");
   const auto observables = create_group(file, "observables");
   for (const char* name : {"nu", "eps_vol", "eps_dev"})
     create_element(create_group(observables, name), edges, H5T_IEEE_F64LE, {});
@@ -124,7 +148,7 @@ void write_particles(hid_t file, const hdf5::Group& grains, const hdf5::Group& e
 
 /// Writes frame `index` of a dataset, which grows to hold it.
 void write_frame(hid_t file, const std::string& name, hsize_t index, hid_t type, const void* data) {
-  const std::string what = "cannot write " + name;
+  const std::string what = "" + name;
   hdf5::Dataset dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), what);
   const hdf5::Space old(H5Dget_space(dataset), what);
   Shape shape(static_cast<std::size_t>(H5Sget_simple_extent_ndims(old)));
@@ -155,22 +179,29 @@ void check_finite(const std::string& file, const std::vector<std::array<double, 
 SnapshotWriter::SnapshotWriter(std::filesystem::path file, std::vector<double> radius)
     : file_(std::move(file)), radius_(std::move(radius)) {
   if (radius_.empty()) throw Error(file_.string(), "", "cannot hold a packing without grains");
-  if (std::filesystem::exists(file_))
+  std::error_code ignored;
+  if (std::filesystem::exists(file_, ignored))
     throw Error(file_.string(), "", "is there already and is not overwritten");
+  try {
+    reserve(file_, radius_.size() * sizeof(double) + header_room);
+  } catch (const Error&) {
+    std::filesystem::remove(file_, ignored);
+    throw;
+  }
   const hdf5::Session session;
   try {
-    hdf5::File out(H5Fcreate(file_.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, file_access()),
-                   "cannot create the file");
+    hdf5::File out(H5Fcreate(file_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, file_access()), "creating it");
     write_header(out);
     {
       const auto grains = create_group(create_group(out, "particles"), "grains");
       const auto edges = write_box(grains);
       write_particles(out, grains, edges, radius_);
     }
-    hdf5::check(H5Fflush(out, H5F_SCOPE_GLOBAL), "cannot write");
-    out.close("cannot write");
+    hdf5::check(H5Fflush(out, H5F_SCOPE_GLOBAL), "flushing it");
+    out.close("closing it");
   } catch (const hdf5::Failure& failure) {
-    throw Error(file_.string(), "", failure.what());
+    std::filesystem::remove(file_, ignored);
+    throw Error::cannot_write(file_.string(), failure.what());
   }
 }
 
@@ -185,9 +216,9 @@ void SnapshotWriter::append(const State& state, const Observables& observables) 
   check_finite(name, {{observables.nu, observables.eps_vol, observables.eps_dev}}, "observables");
   const std::array<double, 9> edges{state.box[0], 0, 0, 0, state.box[1], 0, 0, 0, state.box[2]};
   const hdf5::Session session;
+  reserve(file_, radius_.size() * 6 * sizeof(double) + header_room);
   try {
-    hdf5::File out(H5Fopen(file_.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, file_access()),
-                   "cannot be opened for writing");
+    hdf5::File out(H5Fopen(file_.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, file_access()), "opening it");
     const auto write = [&](const std::string& dataset, hid_t type, const void* data) {
       write_frame(out, dataset, frames_, type, data);
     };
@@ -200,12 +231,11 @@ void SnapshotWriter::append(const State& state, const Observables& observables) 
     write("/observables/eps_dev/value", H5T_NATIVE_DOUBLE, &observables.eps_dev);
     write("/observables/segment/value", H5T_NATIVE_UINT64, &observables.segment);
     write(grains + "box/edges/time", H5T_NATIVE_DOUBLE, &state.time_us);
-    // Last and only after the rest is on its way to the disk: a frame counts once its step is there.
-    hdf5::check(H5Fflush(out, H5F_SCOPE_GLOBAL), "cannot write");
+    // Last, and each dataset is flushed as it is written: a frame counts once its step is there.
     write(grains + "box/edges/step", H5T_NATIVE_UINT64, &state.step);
-    out.close("cannot write");
+    out.close("closing it");
   } catch (const hdf5::Failure& failure) {
-    throw Error(name, "", failure.what());
+    throw Error::cannot_write(name, failure.what());
   }
   ++frames_;
 }
