@@ -37,9 +37,11 @@ void Dynamics::start(double dt, const Vec3& rate) {
   dt_ = dt;
   box_.set(box_.length(), rate);
   update_forces();
-  // With the acceleration of the step before set to that of now, the first step is an ordinary velocity
-  // Verlet step.
-  for (std::size_t i = 0; i < count(); ++i) grains_.acceleration[i] = acceleration(i);
+  for (std::size_t i = 0; i < count(); ++i) {
+    const Quad now = acceleration(i), &v = grains_.motion[i];
+    grains_.half[i] = {v.x - 0.5 * dt * now.x, v.y - 0.5 * dt * now.y, v.z - 0.5 * dt * now.z, 0};
+    grains_.acceleration[i] = now;
+  }
 }
 
 void Dynamics::step(const Vec3& length, const Vec3& rate) {
@@ -58,8 +60,8 @@ Quad Dynamics::acceleration(std::size_t i) const {
           f.z * inverse_mass - (drag + rate[2]) * v.z, inverse_mass};
 }
 
-/// From the forces at time n: corrects the velocity (v_n = predicted + dt/2 (a_n - a_n-1)), goes on by half a
-/// step, moves the grains with it and with the box, and predicts the velocity at n + 1.
+/// From the forces at time n: takes the velocity from n - 1/2 to n + 1/2, moves the grains with it and with
+/// the box, and predicts the velocity at n + 1.
 void Dynamics::move(const Vec3& length) {
   const Vec3 stretch = {length[0] / box_.length()[0], length[1] / box_.length()[1],
                         length[2] / box_.length()[2]};
@@ -68,16 +70,15 @@ void Dynamics::move(const Vec3& length) {
   const double half = 0.5 * dt_;
   for (std::size_t i = 0; i < count(); ++i) {
     const Quad now = acceleration(i);
-    Quad &x = grains_.place[i], &v = grains_.motion[i], &before = grains_.acceleration[i];
-    v.x += dt_ * now.x - half * before.x;
-    v.y += dt_ * now.y - half * before.y;
-    v.z += dt_ * now.z - half * before.z;
+    Quad &x = grains_.place[i], &v = grains_.half[i], &before = grains_.acceleration[i];
+    v.x += dt_ * now.x;
+    v.y += dt_ * now.y;
+    v.z += dt_ * now.z;
     x.x = stretch[0] * x.x + path[0] * v.x;
     x.y = stretch[1] * x.y + path[1] * v.y;
     x.z = stretch[2] * x.z + path[2] * v.z;
-    v.x += half * now.x;
-    v.y += half * now.y;
-    v.z += half * now.z;
+    grains_.motion[i] = {v.x + dt_ * now.x - half * before.x, v.y + dt_ * now.y - half * before.y,
+                         v.z + dt_ * now.z - half * before.z, 0};
     before = now;
   }
 }
@@ -88,14 +89,13 @@ void Dynamics::update_forces() {
 }
 
 std::vector<Quad> Dynamics::velocities() const {
-  std::vector<Quad> v = grains_.motion;
-  if (dt_ == 0) return v;  // not started
-  const double half = 0.5 * dt_;
+  if (dt_ == 0) return grains_.motion;  // not started
+  std::vector<Quad> v = grains_.half;
   for (std::size_t i = 0; i < count(); ++i) {
-    const Quad now = acceleration(i), &before = grains_.acceleration[i];
-    v[i].x += half * (now.x - before.x);
-    v[i].y += half * (now.y - before.y);
-    v[i].z += half * (now.z - before.z);
+    const Quad now = acceleration(i);
+    v[i].x += 0.5 * dt_ * now.x;
+    v[i].y += 0.5 * dt_ * now.y;
+    v[i].z += 0.5 * dt_ * now.z;
   }
   return v;
 }

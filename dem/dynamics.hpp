@@ -23,11 +23,12 @@ namespace grainlaw::dem {
 /// not hold back a homogeneous flow. The contacts (Eq. 2.1) see the true relative velocity, v_i - v_j + G
 /// (x_i - x_j). The term m G v makes the work of the box equal that of the total stress, static plus kinetic.
 ///
-/// One step. x moves with the velocity of the half step, the box moves, and forces are computed for this (x,
-/// box) with the full-step velocity predicted from the last acceleration, v + dt a. Its error is O(dt^2), so
-/// the scheme is of second order although the forces depend on velocity (the half-step velocity would make it
-/// first order). All that is read between steps (positions, velocities, measurements, states) belongs to one
-/// time and one box.
+/// One step is velocity Verlet: x moves with the velocity of the half step, the box moves, and forces are
+/// computed for this (x, box). They depend on the velocity of the full step, which is not known yet; it is
+/// predicted with the extrapolated acceleration, v + dt/2 (a_n + (2 a_n - a_n-1)). The prediction errs by
+/// O(dt^3), so the scheme keeps its second order and, to leading order, its error constant (taking the
+/// half-step velocity would make it first order). All that is read between steps (positions, velocities,
+/// measurements, states) belongs to one time and one box.
 class Dynamics {
  public:
   /// Throws Error as Neighbours::update does.

@@ -10,6 +10,7 @@ namespace grainlaw::dem {
 Grains::Grains(const State& state, double rho)
     : place(state.count()),
       motion(state.count()),
+      half(state.count()),
       force(state.count()),
       acceleration(state.count()),
       id(state.count()) {
@@ -47,6 +48,7 @@ void permute(std::vector<T>& list, const std::vector<std::uint32_t>& order) {
 void Grains::reorder(const std::vector<std::uint32_t>& order) {
   permute(place, order);
   permute(motion, order);
+  permute(half, order);
   permute(force, order);
   permute(acceleration, order);
   permute(id, order);

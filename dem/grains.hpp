@@ -15,6 +15,7 @@ namespace grainlaw::dem {
 struct Grains {
   std::vector<Quad> place;         ///< x, y, z | radius, mm
   std::vector<Quad> motion;        ///< fluctuation velocity that the contact forces see, mm/us
+  std::vector<Quad> half;          ///< fluctuation velocity half a step before, mm/us
   std::vector<Quad> force;         ///< contact force, ug mm/us^2
   std::vector<Quad> acceleration;  ///< of the step before, mm/us^2 | 1/mass, 1/ug
   std::vector<std::uint32_t> id;

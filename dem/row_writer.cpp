@@ -13,7 +13,7 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double quasi_static = 1e-3;    // E_k/E_p of the thesis's data stays below (section 2.2.3)
-constexpr double jammed_share = 0.82;    // of the grains with four contacts: jammed (section 5.3)
+constexpr double jammed_share = 0.82;    // of the grains with four contacts: jammed (ch. 5)
 constexpr double crystallising_w = 1.2;  // fits of the thesis leave out w below (Table 3.2)
 
 /// One row by column name.

@@ -1,0 +1,233 @@
+// A scene from beginning to end: columns, determinism, stopping, continuing from a snapshot, and what is
+// refused.
+#include "grainlaw/dem/element_test.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/file.hpp"
+#include "grainlaw/element/record.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+namespace fs = std::filesystem;
+
+Scene scene_of(const std::string& json) {
+  return Scene::read(Reader(parse_json(json, "scene.json"), "scene.json"), "");
+}
+
+class ElementTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    dir = fs::temp_directory_path() / ("grainlaw-element-test-" + std::to_string(::getpid()));
+    fs::remove_all(dir);
+  }
+  void TearDown() override { fs::remove_all(dir); }
+  fs::path dir;
+};
+
+// Fast and coarse: what is tested here is not the physics of slow flow.
+const char* const small_scene = R"({
+  "preparation": {"count": 100, "seed": 3, "rate": 1e-3, "relax": {"duration": 100}},
+  "path": {"segments": [
+    {"mode": "iso", "controls": {"nu": 0.75}, "rate": 2e-4},
+    {"mode": "relax", "tolerance": 1e-5, "duration": 200},
+    {"mode": "d2", "amount": 0.05, "rate": 1e-4},
+    {"mode": "uni", "controls": {"nu": 0.72}, "rate": 1e-4}]},
+  "measure": {"rows": 10, "snapshots": [{"segment": 0, "nu": 0.7}, {"segment": 1}, {"segment": 2, "eps_dev": 0.03}]}
+})";
+
+TEST_F(ElementTest, RecordOfAllModes) {
+  const RunSummary summary = run_element_test(scene_of(small_scene), dir);
+  EXPECT_FALSE(summary.stopped);
+  EXPECT_GT(summary.particle_steps, 100000u);
+  for (const char* name : {"record.csv", "scene.json", "provenance.json", "snapshots.h5"})
+    EXPECT_TRUE(fs::exists(dir / name)) << name;
+  const Record r = Record::read_csv(dir / "record.csv", record_columns());
+  ASSERT_EQ(r.rows(), 1u + 10 + 1 + 10 + 10);
+  const double nu[] = {0.64, 0.75, 0.75, 0.75, 0.72};
+  const std::size_t end_row[] = {0, 10, 11, 21, 31};
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(r["nu"][end_row[k]], nu[k], 1e-12);
+  for (std::size_t i = 1; i < r.rows(); ++i) {
+    EXPECT_TRUE(std::isnan(r["phi_J"][i]));
+    EXPECT_NEAR(r["eps_vol"][i], std::log(r["nu"][i] / r["nu"][0]), 1e-12);
+    EXPECT_GT(r["t"][i], r["t"][i - 1]);
+    if (r["nu"][i] < 0.7) continue;
+    for (const auto& column : record_columns())
+      EXPECT_EQ(std::isfinite(r[column][i]), column != "phi_J") << column << " in row " << i;
+    EXPECT_NEAR(r["P"][i], (r["sxx"][i] + r["syy"][i] + r["szz"][i]) / 3, 1e-12);
+    EXPECT_NEAR(r["F_v"][i], r["Fxx"][i] + r["Fyy"][i] + r["Fzz"][i], 1e-12);
+    EXPECT_NEAR(r["s_dev"][i] * r["P"][i], r["sigma_dev"][i], 1e-12);
+    EXPECT_NEAR(r["C_star"][i] * r["f_NR"][i], r["C"][i], 1e-12);
+  }
+  // rows evenly spaced in strain, to a time step
+  for (std::size_t k = 1; k <= 10; ++k) {
+    EXPECT_NEAR(r["eps_vol"][k], 0.1 * static_cast<double>(k) * std::log(0.75 / 0.64), 2e-5);
+    EXPECT_NEAR(r["eps_dev"][11 + k], 0.005 * static_cast<double>(k), 1e-5);
+    EXPECT_EQ(r["segment"][11 + k], 2);
+  }
+  // uniaxial decompression by ln(0.72/0.75) takes eps_dev back by as much, and z with it
+  EXPECT_NEAR(r["eps_dev"][31], 0.05 + std::log(0.72 / 0.75), 1e-12);
+  // jammed at 0.75: the pressure and contacts of the thesis, within the scatter of 100 grains and a fast run
+  EXPECT_NEAR(r["P"][11], 0.049, 0.004);
+  EXPECT_NEAR(r["C"][11], 8.4, 0.4);
+  EXPECT_LT(r["Ek_over_Ep"][11], 1e-5);
+  // D2 compresses y and extends x
+  EXPECT_GT(r["syy"][21], r["sxx"][21]);
+  EXPECT_GT(r["s_dev"][21], 0.05);
+
+  const auto frames = list_frames(dir / "snapshots.h5");
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_NEAR(frames[0].nu, 0.7, 1e-4);
+  EXPECT_GE(frames[0].nu, 0.7 - 1e-12);
+  EXPECT_NEAR(frames[1].nu, 0.75, 1e-12);
+  EXPECT_NEAR(frames[2].eps_dev, 0.03, 1e-5);
+  EXPECT_EQ(frames[2].segment, 2u);
+}
+
+TEST_F(ElementTest, SameSceneSameBitsWhateverIsWritten) {
+  const char* const text =
+      R"({"preparation": {"count": 60, "seed": 5, "rate": 1e-3, "relax": {"duration": 50}},
+    "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.7}, "rate": 5e-4}]},
+    "measure": {"rows": %ROWS%}})";
+  const auto with = [&](const std::string& rows, const std::string& name) {
+    std::string json = text;
+    json.replace(json.find("%ROWS%"), 6, rows);
+    run_element_test(scene_of(json), dir / name);
+    return read_file(dir / name / "record.csv");
+  };
+  const std::string first = with("5", "a");
+  EXPECT_EQ(first, with("5", "b"));
+  with("10, \"snapshots\": [{\"segment\": 0, \"nu\": 0.67}]", "c");
+  const Record coarse = Record::read_csv(dir / "a" / "record.csv"),
+               fine = Record::read_csv(dir / "c" / "record.csv");
+  for (std::size_t k = 0; k <= 5; ++k) {
+    EXPECT_EQ(coarse["P"][k], fine["P"][2 * k]);
+    EXPECT_EQ(coarse["Ek_over_Ep"][k], fine["Ek_over_Ep"][2 * k]);
+  }
+}
+
+TEST_F(ElementTest, ContinuesFromASnapshot) {
+  run_element_test(scene_of(small_scene), dir / "a");
+  const std::string json =
+      R"({"preparation": {"snapshot": ")" + (dir / "a" / "snapshots.h5").string() +
+      R"(", "segment": 1}, "path": {"segments": [{"mode": "d2", "amount": 0.05, "rate": 1e-4}]},
+                           "measure": {"rows": 10}})";
+  run_element_test(scene_of(json), dir / "b");
+  const Record a = Record::read_csv(dir / "a" / "record.csv"), b = Record::read_csv(dir / "b" / "record.csv");
+  // The state at the end of segment 1 is that at the start of the new test, up to the order of sums.
+  EXPECT_NEAR(b["P"][0], a["P"][11], 1e-12);
+  EXPECT_NEAR(b["sxy"][0], a["sxy"][11], 1e-12);
+  EXPECT_NEAR(b["Ek_over_Ep"][0] / a["Ek_over_Ep"][11], 1, 1e-6);
+  EXPECT_EQ(b["C"][0], a["C"][11]);
+  EXPECT_EQ(b["t"][0], 0);
+  // and so is the next one, before the flow becomes chaotic
+  EXPECT_NEAR(b["P"][1] / a["P"][12], 1, 1e-3);
+}
+
+TEST_F(ElementTest, StopsWhenToldAndLeavesNoRecord) {
+  std::atomic<bool> stop = false;
+  std::vector<double> shares;
+  RunHooks hooks;
+  hooks.stop = &stop;
+  hooks.progress = [&](double share, const std::string&) {
+    shares.push_back(share);
+    if (share > 0.05) stop = true;
+  };
+  const Scene scene =
+      scene_of(R"({"preparation": {"count": 500}, "path": {"segments": [{"mode": "iso", "amount": 0.1}]}})");
+  const RunSummary summary = run_element_test(scene, dir, hooks);
+  EXPECT_TRUE(summary.stopped);
+  EXPECT_FALSE(fs::exists(dir / "record.csv"));
+  EXPECT_LT(shares.back(), 0.06);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+}
+
+TEST_F(ElementTest, ProgressEndsAtOne) {
+  double last = -1;
+  std::vector<std::string> stages;
+  RunHooks hooks;
+  hooks.progress = [&](double share, const std::string& stage) {
+    EXPECT_GE(share, last);
+    last = share;
+    if (stages.empty() || stages.back() != stage) stages.push_back(stage);
+  };
+  run_element_test(scene_of(small_scene), dir, hooks);
+  EXPECT_GT(last, 0.95);
+  EXPECT_LE(last, 1);
+  EXPECT_THAT(stages, testing::ElementsAre("compress the gas", "relax the packing", "iso (1 of 4)",
+                                           "relax (2 of 4)", "d2 (3 of 4)", "uni (4 of 4)"));
+}
+
+TEST_F(ElementTest, GasWithoutContacts) {
+  const Scene scene = scene_of(R"({
+    "preparation": {"count": 50, "nu_gas": 0.01, "nu": 0.0101, "speed": 1e-6, "rate": 1e-4, "relax": {"duration": 20}},
+    "path": {"segments": [{"mode": "uni", "controls": {"nu": 0.0102}, "rate": 1e-4},
+                          {"mode": "relax", "tolerance": 0.5, "duration": 1000}]},
+    "measure": {"rows": 3}})");
+  const RunSummary summary = run_element_test(scene, dir);
+  EXPECT_TRUE(summary.warnings.empty());
+  const Record r = Record::read_csv(dir / "record.csv");
+  ASSERT_EQ(r.rows(), 5u);
+  for (std::size_t i = 0; i < r.rows(); ++i) {
+    for (const char* zero : {"P", "sigma_dev", "F_v", "F_dev", "C", "f_NR", "sxx", "Fxy"})
+      EXPECT_EQ(r[zero][i], 0) << zero;
+    for (const char* empty : {"s_dev", "C_star", "phi_J", "Ek_over_Ep"})
+      EXPECT_TRUE(std::isnan(r[empty][i])) << empty;
+  }
+  // Without contacts a relaxation ends when the kinetic energy has fallen by its factor: after some ln(2)
+  // t_b/2, not 1000 us.
+  EXPECT_LT(r["t"][4] - r["t"][3], 500);
+  EXPECT_EQ(read_file(dir / "record.csv").find("nan"), std::string::npos);
+}
+
+TEST_F(ElementTest, WarnsOfAFastRun) {
+  const RunSummary summary = run_element_test(scene_of(R"({
+    "preparation": {"count": 60, "nu": 0.7, "rate": 1e-3, "relax": {"duration": 50}},
+    "path": {"segments": [{"mode": "d2", "amount": 0.6, "rate": 0.3}]}, "measure": {"rows": 20}})"),
+                                              dir);
+  ASSERT_EQ(summary.warnings.size(), 1u);
+  EXPECT_THAT(summary.warnings[0], testing::HasSubstr("E_k/E_p is above 1 in"));
+  EXPECT_THAT(read_file(dir / "provenance.json"), testing::HasSubstr("E_k/E_p is above 1 in"));
+}
+
+TEST_F(ElementTest, WarnsOfCrystallisation) {
+  const RunSummary summary = run_element_test(scene_of(R"({"material": {"w": 1},
+    "preparation": {"count": 8, "rate": 1e-2, "relax": {"duration": 5}},
+    "path": {"segments": [{"mode": "relax", "duration": 1}]}})"),
+                                              dir);
+  ASSERT_FALSE(summary.warnings.empty());
+  EXPECT_THAT(summary.warnings.back(), testing::HasSubstr("crystallise"));
+}
+
+TEST_F(ElementTest, RefusesADirectoryInUse) {
+  fs::create_directories(dir);
+  write_file(dir / "mine.txt", "keep");
+  EXPECT_THROW(run_element_test(scene_of(small_scene), dir), Error);
+  EXPECT_EQ(std::distance(fs::directory_iterator(dir), fs::directory_iterator()), 1);
+}
+
+TEST_F(ElementTest, RefusesAPathThatMakesTheBoxTooNarrowBeforeWritingAnything) {
+  const Scene scene =
+      scene_of(R"({"preparation": {"count": 8}, "path": {"segments": [{"mode": "d2", "amount": 1}]}})");
+  try {
+    run_element_test(scene, dir);
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("scene.json: path.segments[0]: makes the box"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("must stay >= "));
+  }
+  EXPECT_FALSE(fs::exists(dir));
+}
+
+}  // namespace
+}  // namespace grainlaw::dem

@@ -1,0 +1,177 @@
+// Stress as the derivative of energy, contacts counted by hand, and invariance under what must not matter.
+#include "grainlaw/dem/measure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "grainlaw/dem/random.hpp"
+#include "packings.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+Measurement measured(const Material& m, const State& state) { return Dynamics(m, state).measure(); }
+
+State strained(State state, const Vec3& compression) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    state.box[c] *= std::exp(-compression[c]);
+    for (auto& x : state.position) x[c] *= std::exp(-compression[c]);
+  }
+  return state;
+}
+
+Material elastic() {
+  Material m;
+  m.gamma = 0;
+  return m;
+}
+
+TEST(Measure, NormalStressIsDerivativeOfEnergy) {
+  const Material m = elastic();
+  const State state = test::squeezed(m, 150, 21, 0.75);
+  const Measurement here = measured(m, state);
+  const double volume = state.box[0] * state.box[1] * state.box[2], h = 1e-6;
+  for (std::size_t c = 0; c < 3; ++c) {
+    Vec3 plus{}, minus{};
+    plus[c] = h;
+    minus[c] = -h;
+    const double slope =
+        (measured(m, strained(state, plus)).elastic - measured(m, strained(state, minus)).elastic) / (2 * h);
+    EXPECT_NEAR(here.stress[c] / (slope / volume), 1, 1e-6) << c;
+  }
+}
+
+TEST(Measure, AllStressComponentsAreDerivativesOfEnergy) {
+  // Strain the branch vectors of the contacts: l -> (1 - e) l with a symmetric e.
+  const Material m = elastic();
+  const State state = test::squeezed(m, 150, 22, 0.75);
+  Dynamics dynamics(m, state);
+  const Measurement here = dynamics.measure();
+  const int axis_a[6] = {0, 1, 2, 1, 0, 0}, axis_b[6] = {0, 1, 2, 2, 2, 1};
+  const double h = 1e-6;
+  for (std::size_t c = 0; c < 6; ++c) {
+    const auto energy = [&](double e) {
+      double sum = 0;
+      for_each_contact(
+          dynamics.neighbours().pairs(), dynamics.grains(), dynamics.box(), [&](const Contact& contact) {
+            const auto a = static_cast<std::size_t>(axis_a[c]), b = static_cast<std::size_t>(axis_b[c]);
+            Vec3 l = contact.branch;
+            l[a] -= 0.5 * e * contact.branch[b];
+            l[b] -= 0.5 * e * contact.branch[a];
+            const double overlap = contact.overlap + contact.distance - norm(l);
+            sum += 0.5 * m.k * overlap * overlap;
+          });
+      return sum;
+    };
+    const double slope = (energy(h) - energy(-h)) / (2 * h);
+    const double scale = std::abs(trace(here.stress)) / 3;
+    EXPECT_NEAR(here.stress[c], slope / dynamics.box().volume(), 1e-6 * scale) << c;
+  }
+}
+
+TEST(Measure, OneContactByHand) {
+  const Material m = elastic();
+  State state;
+  state.box = {10, 10, 10};
+  state.radius = {1, 0.5};
+  state.position = {{0.2, 5, 5}, {9.0, 5, 5}};  // touch through the face x = 0; overlap 0.3
+  state.velocity = {{0, 0, 0.1}, {0, 0, 0}};
+  const Measurement one = measured(m, state);
+  EXPECT_EQ(one.contacts, 1u);
+  EXPECT_NEAR(one.stress[0], 1e5 * 0.3 * 1.2 / 1000, 1e-9);
+  for (std::size_t c = 1; c < 6; ++c) EXPECT_NEAR(one.stress[c], 0, 1e-12);
+  const double v1 = sphere_volume(1), v2 = sphere_volume(0.5);
+  EXPECT_NEAR(one.fabric[0], (v1 + v2) / 1000, 1e-12);
+  EXPECT_NEAR(one.nu, (v1 + v2) / 1000, 1e-15);
+  EXPECT_NEAR(one.elastic, 0.5e5 * 0.09, 1e-8);
+  EXPECT_NEAR(one.kinetic, 0.5 * 2000 * v1 * 0.01, 1e-9);
+  EXPECT_NEAR(one.kinetic_stress[2], 2000 * v1 * 0.01 / 1000, 1e-12);
+  EXPECT_DOUBLE_EQ(one.C_r, 1);
+  EXPECT_EQ(one.C, 0);
+  EXPECT_EQ(one.f_NR, 0);
+  EXPECT_TRUE(std::isnan(one.C_star));
+}
+
+TEST(Measure, RattlersAreLeftOutOfCAndKeptInFabric) {
+  // A face-centred cubic crystal (12 contacts each) and one grain more in a hole, touching three of its walls
+  // only.
+  const Material m = elastic();
+  State state = test::crystal(0.99, 0);
+  const double a = 0.5 * state.box[0];
+  // The hole's centre is 0.99 sqrt(2) = 1.400 from six grains; r = 0.3 leaves 0.1 of room: push it into a
+  // corner.
+  state.position.push_back({a / 2 + 0.12, 0.12, 0.12});
+  state.radius.push_back(0.3);
+  state.velocity.push_back({0, 0, 0});
+  const Measurement crystal = measured(m, state);
+  EXPECT_DOUBLE_EQ(crystal.f_NR, 32.0 / 33);
+  EXPECT_EQ(crystal.contacts, 32u * 6 + 3);
+  // Three of the grains count the contact with the rattler as their thirteenth.
+  EXPECT_DOUBLE_EQ(crystal.C, (32.0 * 12 + 3) / 33);
+  EXPECT_DOUBLE_EQ(crystal.C_star, (32.0 * 12 + 3) / 32);
+  EXPECT_DOUBLE_EQ(crystal.C_r, (32.0 * 12 + 6) / 33);
+  double fabric = (32 * 12 + 3) * sphere_volume(1) + 3 * sphere_volume(0.3);
+  EXPECT_NEAR(trace(crystal.fabric), fabric / (8 * a * a * a), 1e-12);
+}
+
+void expect_same(const Sym6& a, const Sym6& b, double scale) {
+  for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(a[c], b[c], 1e-11 * scale) << c;
+}
+
+class Invariance : public testing::Test {
+ protected:
+  Material m;
+  State state = test::squeezed(m, 200, 23, 0.72);
+  Measurement here = measured(m, state);
+  void expect_equal(const Measurement& other, const Sym6& stress, const Sym6& fabric) {
+    EXPECT_EQ(other.contacts, here.contacts);
+    EXPECT_DOUBLE_EQ(other.C, here.C);
+    EXPECT_DOUBLE_EQ(other.C_star, here.C_star);
+    EXPECT_DOUBLE_EQ(other.f_NR, here.f_NR);
+    EXPECT_NEAR(other.nu, here.nu, 1e-14);
+    EXPECT_NEAR(other.elastic / here.elastic, 1, 1e-11);
+    EXPECT_NEAR(other.kinetic / here.kinetic, 1, 1e-12);
+    expect_same(other.stress, stress, here.stress[0]);
+    expect_same(other.fabric, fabric, here.fabric[0]);
+  }
+};
+
+TEST_F(Invariance, Permutation) {
+  std::vector<std::size_t> order(state.count());
+  std::iota(order.begin(), order.end(), 0u);
+  Random(1).shuffle(order);
+  State other = state;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    other.position[i] = state.position[order[i]];
+    other.velocity[i] = state.velocity[order[i]];
+    other.radius[i] = state.radius[order[i]];
+  }
+  expect_equal(measured(m, other), here.stress, here.fabric);
+}
+
+TEST_F(Invariance, TranslationAndImages) {
+  State other = state;
+  for (std::size_t i = 0; i < other.count(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      other.position[i][c] +=
+          1.234 * static_cast<double>(c + 1) + state.box[c] * static_cast<double>(i % 5) - 2 * state.box[c];
+  expect_equal(measured(m, other), here.stress, here.fabric);
+}
+
+TEST_F(Invariance, AxisSwap) {
+  State other = state;
+  for (std::size_t i = 0; i < other.count(); ++i) {
+    other.position[i] = {state.position[i][1], state.position[i][2], state.position[i][0]};
+    other.velocity[i] = {state.velocity[i][1], state.velocity[i][2], state.velocity[i][0]};
+  }
+  other.box = {state.box[1], state.box[2], state.box[0]};
+  // x' = y, y' = z, z' = x, so yz' = zx, xz' = yx, xy' = yz
+  const auto swapped = [](const Sym6& q) { return Sym6{q[1], q[2], q[0], q[4], q[5], q[3]}; };
+  expect_equal(measured(m, other), swapped(here.stress), swapped(here.fabric));
+}
+
+}  // namespace
+}  // namespace grainlaw::dem
