@@ -85,7 +85,7 @@ std::vector<WrittenTest> read_test(Reader& reader, const Campaign& campaign) {
   std::vector<WrittenTest> tests;
   for (const double nu : from->nu) {
     WrittenTest one{test, from};
-    one.test.name += "-" + to_text(nu);
+    one.test.name.append("-").append(to_text(nu));
     if (one.test.name.size() > longest_name)
       reader.fail("name", "is too long: with the volume fraction it becomes \"" + one.test.name + "\"");
     one.from->nu = {nu};

@@ -1,0 +1,38 @@
+// What a running campaign says: on a terminal a live line and a line per finished test, elsewhere lines
+// alone; and the same with the time of day in the campaign's log file.
+#pragma once
+
+#include <spdlog/logger.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "grainlaw/apps/terminal.hpp"
+#include "grainlaw/calibrate/run_campaign.hpp"
+
+namespace grainlaw::apps {
+
+class CampaignTalk {
+ public:
+  /// Appends to campaign.log in `dir`. A log that cannot be written is given up silently: the campaign's own
+  /// files tell.
+  CampaignTalk(Terminal& terminal, const std::filesystem::path& dir);
+
+  void say(const std::string& line);
+  void warn(const std::string& line);
+  /// Hooks for run_campaign; the talk must outlive them.
+  calibrate::CampaignHooks hooks(const std::atomic<bool>& stop);
+
+ private:
+  void show(const calibrate::CampaignProgress& progress);
+  void finished(const calibrate::FinishedJob& job, const calibrate::CampaignProgress& progress);
+  void failed(const calibrate::FailedJob& job);
+
+  Terminal& terminal_;
+  std::shared_ptr<spdlog::logger> log_;
+  std::chrono::steady_clock::time_point last_line_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace grainlaw::apps

@@ -1,0 +1,105 @@
+// The program grainlaw: reads the command line, runs one subcommand and turns its errors into one line and an
+// exit status.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "grainlaw/apps/commands.hpp"
+#include "grainlaw/apps/terminal.hpp"
+#include "grainlaw/apps/version_text.hpp"
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::apps {
+
+namespace {
+
+constexpr auto description =
+    "grainlaw: constitutive laws for granular matter, calibrated from the grains up.\n"
+    "Simulates element tests of real grains, fits a law to them, and predicts tests that the law never saw.";
+
+constexpr auto examples =
+    "Examples:\n"
+    "  grainlaw calibrate                                        the quick campaign, into out/quick\n"
+    "  grainlaw calibrate mine.json -o out/mine --jobs 8         your own campaign\n"
+    "  grainlaw simulate data/scenes/d2.json -o out/d2           one element test by DEM\n"
+    "  grainlaw predict data/thesis/parameters.json data/paths/d2-cycle.json -o d2.csv --si\n"
+    "                                                            the law along a path, stress in kPa\n"
+    "  grainlaw fit out/quick -o parameters.json                 the fits alone, from records on disk\n"
+    "  grainlaw report out/quick                                 pictures and tables from what is on disk\n"
+    "File formats: docs/formats.md. Every command at length: docs/commands.md.\n"
+    "Exit status: 0 well; 1 a test or an integration failed; 2 bad input or a full disk; 130 interrupted.";
+
+/// One line on standard error, whatever the message holds.
+void complain(std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::fputs((message + "\n").c_str(), stderr);
+}
+
+/// A line for a mistake on the command line.
+int complain_usage(const CLI::App& program, const std::string& what) {
+  const auto chosen = program.get_subcommands();
+  const std::string command = "grainlaw" + (chosen.empty() ? "" : " " + chosen.front()->get_name());
+  complain(fmt::format("{}: {}; see {} --help", command, what, command));
+  return bad_input;
+}
+
+int run_command_line(int argc, char** argv) {
+  CLI::App program(description, "grainlaw");
+  program.footer(examples);
+  program.set_version_flag("--version", version_text(), "version, commit, compiler and libraries");
+  program.require_subcommand(1);
+  const std::array<Action, 5> actions{add_calibrate(program), add_simulate(program), add_predict(program),
+                                      add_fit(program), add_report(program)};
+  const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
+  const auto is_unknown = [&](const std::string& name) {
+    return std::none_of(commands.begin(), commands.end(),
+                        [&](const auto* known) { return known->get_name() == name; });
+  };
+  if (argc > 1 && argv[1][0] != '-' && is_unknown(argv[1]))
+    return complain_usage(
+        program,
+        fmt::format("unknown command \"{}\"; known are calibrate, simulate, predict, fit, report", argv[1]));
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    write_stdout(success.get_name() == "CallForVersion" ? success.what() : program.help());
+    return all_well;
+  } catch (const CLI::ParseError& error) {
+    return complain_usage(program, error.what());
+  }
+  for (std::size_t i = 0; i < commands.size(); ++i)
+    if (commands[i]->parsed()) return actions.at(i)();
+  return bad_input;
+}
+
+}  // namespace
+
+}  // namespace grainlaw::apps
+
+int main(int argc, char** argv) {
+  using namespace grainlaw;
+  std::signal(SIGXFSZ,
+              SIG_IGN);  // a file that may not grow is an error like a full disk, not the end of the process
+  try {
+    return apps::run_command_line(argc, argv);
+  } catch (const Error& error) {
+    apps::complain(error.what());
+    return apps::bad_input;
+  } catch (const std::filesystem::filesystem_error& error) {
+    apps::complain(fmt::format("{}: {}", error.path1().string(), error.code().message()));
+    return apps::bad_input;
+  } catch (const std::bad_alloc&) {
+    apps::complain("grainlaw: out of memory");
+    return apps::failed;
+  } catch (const std::exception& error) {
+    apps::complain(fmt::format("grainlaw: fault of the program, please report it: {}", error.what()));
+    return apps::failed;
+  }
+}

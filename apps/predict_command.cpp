@@ -1,0 +1,135 @@
+// grainlaw predict: the law as a material point along a path.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "grainlaw/apps/arguments.hpp"
+#include "grainlaw/apps/commands.hpp"
+#include "grainlaw/apps/terminal.hpp"
+#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/record.hpp"
+#include "grainlaw/model/predict.hpp"
+
+namespace grainlaw::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string parameters, path, output, form, rtol, rows;
+  bool si = false;
+};
+
+/// What a prediction follows.
+struct Followed {
+  Path path;
+  std::optional<Record> record;  ///< of a record directory: its rows are those of the prediction
+};
+
+/// A PATH.json, or the path that a record ran, from the volume fraction it began at.
+Followed read_followed(const fs::path& where) {
+  if (!fs::is_directory(where)) return {Path::read(Reader(load_json(where), where.string())), std::nullopt};
+  const fs::path file = where / "scene.json";
+  Followed followed{dem::Scene::read(Reader(load_json(file), file.string()), where).path,
+                    Record::read_csv(where / "record.csv", {"segment", "eps_vol", "eps_dev", "nu"})};
+  if (followed.record->rows() == 0) throw Error((where / "record.csv").string(), "", "has no rows");
+  followed.path.start.nu = (*followed.record)["nu"].front();
+  return followed;
+}
+
+/// The record with stress in kPa: P_kPa and sigma_dev_kPa in place of P and sigma_dev.
+Record in_kPa(const Record& record, double unit_kPa) {
+  std::vector<std::string> names = record.columns();
+  for (auto& name : names)
+    if (name == "P" || name == "sigma_dev") name += "_kPa";
+  Record result(names);
+  for (std::size_t i = 0; i < record.rows(); ++i) {
+    std::vector<double> row;
+    for (const auto& name : record.columns())
+      row.push_back(record[name][i] * (name == "P" || name == "sigma_dev" ? unit_kPa : 1.0));
+    result.append(row);
+  }
+  return result;
+}
+
+/// Every start value and where it comes from, on standard error: standard output may be the table.
+void echo_start(Terminal& terminal, const model::Prediction& prediction) {
+  for (const auto& [name, entry] : prediction.start.items()) {
+    const Json& value = entry.at("value");
+    terminal.warn(fmt::format("start {:<10} {:<12} {}", name,
+                              value.is_number() ? to_text(value.get<double>()) : "unknown",
+                              entry.at("from").get<std::string>()));
+  }
+  for (const auto& warning : prediction.warnings) terminal.warn("warning: " + warning);
+}
+
+model::PredictOptions read_options(const Arguments& arguments) {
+  model::PredictOptions options;
+  options.form = model::form_of(arguments.form);
+  if (!arguments.rtol.empty()) options.rtol = read_number("--rtol", arguments.rtol, above_up_to(0, 0.1));
+  if (!arguments.rows.empty())
+    options.rows_per_leg = static_cast<int>(read_whole_number("--rows", arguments.rows, 1, 100'000));
+  return options;
+}
+
+int run(const Arguments& arguments) {
+  const auto options = read_options(arguments);
+  const auto parameters = model::ParameterSet::load(arguments.parameters);
+  const Followed followed = read_followed(arguments.path);
+  const bool by_record = followed.record && arguments.rows.empty();
+  const model::Prediction prediction =
+      by_record ? model::predict(parameters, followed.path,
+                                 model::samples_of(*followed.record, followed.path, *followed.path.start.nu),
+                                 options)
+                : model::predict(parameters, followed.path, options);
+  Terminal terminal;
+  echo_start(terminal, prediction);
+  if (prediction.status.failed()) {
+    terminal.warn(arguments.path + ": " + prediction.status.message);
+    return failed;
+  }
+  const Record record =
+      arguments.si ? in_kPa(prediction.record, parameters.material.stress_unit_kPa()) : prediction.record;
+  if (arguments.output.empty())
+    write_stdout(record.to_csv());
+  else
+    record.write_csv(arguments.output);
+  return all_well;
+}
+
+}  // namespace
+
+Action add_predict(CLI::App& program) {
+  CLI::App* command =
+      program.add_subcommand("predict", "The law along a path: a table, to FILE.csv or standard output");
+  const auto arguments = std::make_shared<Arguments>();
+  arguments->form = name_of(model::PredictOptions{}.form);
+  command->add_option("PARAMETERS.json", arguments->parameters, "parameter set")->required();
+  command
+      ->add_option("PATH.json|RECORD_DIR", arguments->path, "path, or a record whose path and rows to follow")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "table to write (default: standard output)")
+      ->type_name("FILE.csv");
+  command->add_option("--form", arguments->form, "reduced_closed, reduced or coupled")
+      ->type_name("FORM")
+      ->capture_default_str();
+  command->add_option("--rtol", arguments->rtol, "relative tolerance of the integration (default: 1e-8)")
+      ->type_name("NUMBER");
+  command
+      ->add_option("--rows", arguments->rows, "rows per segment (default: 100; along a record, its own rows)")
+      ->type_name("NUMBER");
+  command->add_flag("--si", arguments->si,
+                    "stress in kPa: columns P_kPa, sigma_dev_kPa in place of P, sigma_dev");
+  command->footer(
+      "Examples:\n"
+      "  grainlaw predict data/thesis/parameters.json data/paths/d2-cycle.json -o d2.csv\n"
+      "  grainlaw predict out/quick/parameters.json out/quick/records/uni-0.695-s1 --form reduced --si");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace grainlaw::apps

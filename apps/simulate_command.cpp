@@ -1,0 +1,112 @@
+// grainlaw simulate: one element test by DEM.
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "grainlaw/apps/commands.hpp"
+#include "grainlaw/apps/interrupt.hpp"
+#include "grainlaw/apps/terminal.hpp"
+#include "grainlaw/calibrate/lock_file.hpp"
+#include "grainlaw/dem/element_test.hpp"
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string scene, output;
+};
+
+/// The folder as an absolute path without "." and "/" at its end, so that names can be put after it.
+fs::path folder_of(const std::string& argument) {
+  const fs::path folder = fs::absolute(argument).lexically_normal();
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+void check_free(const fs::path& folder, const std::string& shown) {
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) throw Error(shown, "", "is a file, must be a directory");
+  if (!fs::is_empty(folder))
+    throw Error(shown, "", "is not empty, and nothing in it is overwritten; give another directory with -o");
+}
+
+/// Removes the folder that a killed run left; refuses one that holds anything else.
+void remove_leftover(const fs::path& part) {
+  if (!fs::exists(part)) return;
+  for (const auto& entry : fs::directory_iterator(part)) {
+    const std::string name = entry.path().filename().string();
+    bool ours = false;
+    for (const std::string_view file : {"scene.json", "snapshots.h5", "provenance.json", "record.csv"})
+      ours = ours || name.starts_with(file);
+    if (!ours)
+      throw Error(part.string(), "",
+                  "is in the way: it holds \"" + name + "\", which is no part of a record");
+  }
+  fs::remove_all(part);
+}
+
+/// A live line on a terminal.
+dem::RunHooks hooks(Terminal& terminal, const Interrupt& interrupt) {
+  dem::RunHooks hooks;
+  hooks.stop = &interrupt.stop();
+  if (terminal.live())
+    hooks.progress = [&terminal](double fraction, const std::string& stage) {
+      terminal.draw(fmt::format("{} {:3.0f} %  {}", bar_text(fraction, 20), 100 * fraction, stage));
+    };
+  return hooks;
+}
+
+int run(const Arguments& arguments) {
+  const dem::Scene scene = dem::Scene::load(arguments.scene);
+  const fs::path folder = folder_of(arguments.output), part = folder.string() + ".part";
+  check_free(folder, arguments.output);
+  fs::create_directories(folder.parent_path());
+  const calibrate::LockFile lock(part.string() + ".lock", arguments.output);
+  check_free(folder, arguments.output);
+  remove_leftover(part);
+  Interrupt interrupt;
+  Terminal terminal;
+  dem::RunSummary summary;
+  try {
+    summary = dem::run_element_test(scene, part, hooks(terminal, interrupt));
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(part, ignored);
+    throw;
+  }
+  if (summary.stopped) {
+    fs::remove_all(part);
+    terminal.warn("stopped; nothing was written");
+    return interrupted;
+  }
+  fs::rename(part, folder);
+  for (const auto& warning : summary.warnings) terminal.warn("warning: " + warning);
+  terminal.say(fmt::format(
+      "wrote {} in {}, {}", (fs::path(arguments.output) / "record.csv").lexically_normal().string(),
+      time_text(summary.wall_s), speed_text(static_cast<double>(summary.particle_steps) / summary.wall_s)));
+  return all_well;
+}
+
+}  // namespace
+
+Action add_simulate(CLI::App& program) {
+  CLI::App* command =
+      program.add_subcommand("simulate", "One element test by DEM: a record in a new directory");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("SCENE.json", arguments->scene, "material, preparation, path and measure of the test")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "directory to make; must not exist or be empty")
+      ->type_name("DIR")
+      ->required();
+  command->footer("Example:\n  grainlaw simulate data/scenes/d2.json -o out/d2");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace grainlaw::apps

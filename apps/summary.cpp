@@ -1,0 +1,118 @@
+#include "grainlaw/apps/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace grainlaw::apps {
+
+namespace {
+
+std::string number(double value) { return fmt::format("{:.4g}", value); }
+
+/// The fitted parameters with their names, in the order they are shown.
+using Rows = std::vector<std::pair<std::string, const model::Parameter*>>;
+
+Rows fitted_rows(const model::ParameterSet& set) {
+  Rows rows;
+  const auto add = [&](const std::string& name, const model::Parameter& parameter) {
+    if (parameter.source == "fit") rows.emplace_back(name, &parameter);
+  };
+  for (const auto& [mode, law] : set.isotropic) {
+    const std::string group = "isotropic." + mode + ".";
+    add(group + "nu_c", law.nu_c);
+    add(group + "p0", law.p0);
+    add(group + "gamma_p", law.gamma_p);
+    add(group + "C0", law.C0);
+    add(group + "C1", law.C1);
+    add(group + "alpha", law.alpha);
+    add(group + "nu_c_contacts", law.nu_c_contacts);
+    add(group + "phi_c", law.phi_c);
+    add(group + "phi_v", law.phi_v);
+  }
+  if (!set.shear) return rows;
+  const std::pair<const char*, const std::optional<model::SaturationLaw>*> laws[] = {
+      {"s_max", &set.shear->s_max},
+      {"beta_s", &set.shear->beta_s},
+      {"F_max", &set.shear->F_max},
+      {"beta_F", &set.shear->beta_F}};
+  for (const auto& [name, law] : laws) {
+    if (!law->has_value()) continue;
+    const std::string group = std::string("shear.") + name + ".";
+    add(group + "Q_max", (*law)->Q_max);
+    add(group + "Q_v", (*law)->Q_v);
+    add(group + "alpha", (*law)->alpha);
+    add(group + "nu_c", (*law)->nu_c);
+  }
+  return rows;
+}
+
+/// A mean over seeds that leaves undefined values out.
+struct Mean {
+  double sum = 0;
+  int count = 0;
+  void add(const Json& value) {
+    if (!value.is_number()) return;
+    sum += value.get<double>();
+    ++count;
+  }
+  std::string text() const { return count > 0 ? fmt::format("{:.1f} %", 100 * sum / count) : "-"; }
+};
+
+constexpr std::array error_names{"P", "sigma_dev", "s_dev", "F_dev"};
+
+/// "uni-0.69" of "uni-0.69-s1".
+std::string test_of(const std::string& record) { return record.substr(0, record.rfind("-s")); }
+
+}  // namespace
+
+std::string parameter_table(const model::ParameterSet& parameters) {
+  std::string text = fmt::format("{:<30} {:>12} {:>12} {:>12}\n", "parameter", "value", "+-", "thesis");
+  for (const auto& [name, p] : fitted_rows(parameters))
+    text += fmt::format("{:<30} {:>12} {:>12} {:>12}\n", name, number(p->value),
+                        p->stderr_ ? number(*p->stderr_) : "-", p->thesis ? number(*p->thesis) : "-");
+  return text;
+}
+
+std::string fit_remarks(const Json& fits) {
+  std::string text;
+  if (const auto checks = fits.find("checks"); checks != fits.end())
+    for (const Json& check : *checks)
+      text += fmt::format("{}: {} ({})\n", check.value("holds", false) ? "holds" : "FAILS",
+                          check.value("name", ""), check.value("value", ""));
+  if (const auto missing = fits.find("not_determined"); missing != fits.end())
+    for (const Json& one : *missing)
+      text += fmt::format("not determined: {} of {}: {}\n", one.value("parameter", ""), one.value("fit", ""),
+                          one.value("reason", ""));
+  return text;
+}
+
+std::string prediction_table(const Json& predictions) {
+  std::vector<std::pair<std::string, std::string>> order;
+  std::map<std::pair<std::string, std::string>, std::map<std::string_view, Mean>> errors;
+  const auto list = predictions.find("predictions");
+  if (list == predictions.end() || list->empty()) return "";
+  for (const Json& one : *list) {
+    const std::pair key{test_of(one.value("test", "")), one.value("form", "")};
+    if (!errors.contains(key)) order.push_back(key);
+    const auto found = one.find("errors");
+    for (const char* name : error_names)
+      errors[key][name].add(found != one.end() ? found->value(name, Json()) : Json());
+  }
+  std::string text = fmt::format("{:<16} {:<14}", "prediction of", "form");
+  for (const char* name : error_names) text += fmt::format(" {:>9}", name);
+  text += "   (relative L2 error, mean over seeds)\n";
+  for (const auto& key : order) {
+    text += fmt::format("{:<16} {:<14}", key.first, key.second);
+    for (const char* name : error_names) text += fmt::format(" {:>9}", errors[key][name].text());
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace grainlaw::apps

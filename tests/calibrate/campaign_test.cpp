@@ -1,0 +1,215 @@
+// Reading CAMPAIGN.json: lists are written out, states are found on the path that passes them, and what could
+// not be run to its end is refused before anything starts.
+#include "grainlaw/calibrate/campaign.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "campaign_examples.hpp"
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::calibrate {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string refusal(const std::string& text) {
+  try {
+    campaign_of(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Campaign, ReadsTheQuickCampaign) {
+  const auto campaign = Campaign::load(GRAINLAW_DATA_DIR "/campaigns/quick.json");
+  EXPECT_EQ(campaign.name, "quick");
+  EXPECT_GE(campaign.preparation.count, 1000);
+  EXPECT_EQ(campaign.role_of("iso"), Role::fit);
+  int d2_states = 0;
+  for (const auto& test : campaign.tests)
+    d2_states += test.name.starts_with("d2-0.") && test.role == Role::fit;
+  EXPECT_GE(d2_states, 5);
+}
+
+TEST(Campaign, WritesOutListsOfStates) {
+  const auto campaign = campaign_of(with_tests(iso + "," + d2(R"({"test": "iso", "nu": [0.7, 0.75]})")));
+  ASSERT_EQ(campaign.tests.size(), 3u);
+  EXPECT_EQ(campaign.tests[1].name, "d2-0.7");
+  EXPECT_EQ(campaign.tests[2].name, "d2-0.75");
+  EXPECT_DOUBLE_EQ(campaign.test("d2-0.75").nu_start, 0.75);
+  EXPECT_THAT(campaign.tests[1].seeds, ElementsAre(1, 2));
+}
+
+TEST(Campaign, OneStateKeepsTheName) {
+  const auto campaign = campaign_of(with_tests(iso + "," + d2(R"({"test": "iso", "nu": 0.7})")));
+  EXPECT_TRUE(campaign.has_test("d2"));
+  EXPECT_FALSE(campaign.has_test("d2-0.7"));
+}
+
+TEST(Campaign, AStateIsOnTheLastSegmentThatPassesIt) {
+  const auto campaign =
+      campaign_of(with_tests(iso + "," + d2(R"({"test": "iso", "nu": 0.7})", "unloading") + "," +
+                             d2(R"({"test": "iso", "nu": 0.7, "segment": 0})", "loading")));
+  EXPECT_EQ(campaign.test("unloading").from->segment, 1u);
+  EXPECT_EQ(campaign.test("loading").from->segment, 0u);
+  EXPECT_EQ(campaign.test("loading").from->nu, 0.7);
+}
+
+TEST(Campaign, TheEndOfASegmentNeedsNoVolumeFraction) {
+  const auto campaign = campaign_of(with_tests(iso + "," + d2(R"({"test": "iso", "nu": 0.82})", "top") + "," +
+                                               d2(R"({"test": "iso"})", "end") + "," +
+                                               d2(R"({"test": "end", "nu": 0.64})", "again")));
+  EXPECT_EQ(campaign.test("top").from->segment, 0u);  // where segment 1 begins, segment 0 ends
+  EXPECT_FALSE(campaign.test("top").from->nu);
+  EXPECT_EQ(campaign.test("end").from->segment, 1u);
+  EXPECT_NEAR(campaign.test("end").nu_start, 0.64, 1e-15);
+  EXPECT_FALSE(campaign.test("again").from->nu);  // D2 does not change it: the state is D2's end
+}
+
+TEST(Campaign, NominalStartIsFollowedThroughAChain) {
+  const std::string first =
+      R"({"name": "a", "role": "fit", "path": {"segments": [{"mode": "uni", "amount": 0.1}]}})";
+  const std::string second = R"({"name": "b", "role": "predict", "from": {"test": "a"},
+      "path": {"segments": [{"mode": "uni", "amount": 0.05}]}})";
+  const auto campaign = campaign_of(with_tests(second + "," + first + "," + d2(R"({"test": "b"})")));
+  EXPECT_NEAR(campaign.test("b").nu_start, 0.64 * std::exp(0.1), 1e-15);
+  EXPECT_NEAR(campaign.test("d2").nu_start, 0.64 * std::exp(0.15), 1e-15);
+}
+
+TEST(Campaign, AsWrittenItReadsBackTheSame) {
+  const std::string with_measure =
+      R"({"name": "x", "role": "predict", "seeds": [2], "from": {"test": "iso", "nu": [0.7, 0.72]},
+      "measure": {"rows": 7, "snapshots": [{"segment": 0, "eps_dev": 0.1}]},
+      "path": {"segments": [{"mode": "d3", "amount": 0.2}]}})";
+  const auto campaign = campaign_of(with_tests(with_measure + "," + iso + "," + d2(R"({"test": "x-0.7"})")));
+  const auto again = campaign_of(campaign.to_json().dump());
+  EXPECT_EQ(again.to_json(), campaign.to_json());
+  EXPECT_EQ(difference(again, campaign), "");
+  EXPECT_EQ(again.test("x-0.72").measure.rows, 7);
+  EXPECT_FALSE(campaign.to_json().at("preparation").contains("seed"));
+}
+
+TEST(Campaign, SaysWhereTwoDiffer) {
+  const auto one = campaign_of(with_tests(iso));
+  auto text = with_tests(iso);
+  text.replace(text.find("100"), 3, "125");
+  EXPECT_EQ(difference(one, campaign_of(text)), "preparation.count: 100 there, 125 here");
+  EXPECT_EQ(difference(one, campaign_of(with_tests(iso + "," + d2(R"({"test": "iso"})")))),
+            "tests: 1 entries there, 2 here");
+}
+
+TEST(Campaign, RecordsAreNamedByTestAndSeed) { EXPECT_EQ(record_name("uni-0.69", 3), "uni-0.69-s3"); }
+
+TEST(Campaign, RefusesAnOriginThatIsNot) {
+  const auto from = [](const std::string& origin) { return refusal(with_tests(iso + "," + d2(origin))); };
+  EXPECT_EQ(from(R"({"test": "izo"})"),
+            R"(c.json: tests[1].from.test: must be the name of a test, got "izo")");
+  EXPECT_EQ(
+      from(R"({"test": "iso", "nu": 0.9})"),
+      R"(c.json: tests[1].from.nu: must be a volume fraction that "iso" passes, 0.64 to 0.82, got 0.9)");
+  EXPECT_EQ(
+      from(R"({"test": "iso", "nu": [0.7, 0.5]})"),
+      R"(c.json: tests[1].from.nu: must be a volume fraction that "iso" passes, 0.64 to 0.82, got 0.5)");
+  EXPECT_EQ(from(R"({"test": "iso", "segment": 2})"),
+            R"(c.json: tests[1].from.segment: must be less than 2, the number of segments of "iso", got 2)");
+  EXPECT_THAT(from(R"({"test": "iso", "nu": 0.64, "segment": 0})"),
+              HasSubstr(R"(is where "iso" itself starts)"));
+  EXPECT_THAT(from(R"({"test": "iso", "nu": 1})"),
+              StartsWith("c.json: tests[1].from.nu: must be > 0 and < 1, got 1"));
+  EXPECT_THAT(from(R"({"test": "iso", "nus": 0.7})"), HasSubstr("did you mean nu?"));
+  EXPECT_THAT(from(R"({"test": "iso", "nu": [0.7, 0.70005]})"), HasSubstr("0.0002 away from 0.7"));
+  EXPECT_THAT(from(R"({"test": "iso", "nu": [0.7, 0.7]})"), HasSubstr("is taken by another test"));
+}
+
+TEST(Campaign, RefusesAListAsOrigin) {
+  EXPECT_EQ(refusal(with_tests(iso + "," + d2(R"({"test": "iso", "nu": [0.7, 0.75]})") + "," +
+                               d2(R"({"test": "d2"})", "more"))),
+            R"(c.json: tests[2].from.test: "d2" stands for several tests; name one of d2-0.7, d2-0.75)");
+}
+
+TEST(Campaign, RefusesCircles) {
+  EXPECT_EQ(refusal(with_tests(d2(R"({"test": "b"})", "a") + "," + d2(R"({"test": "c"})", "b") + "," +
+                               d2(R"({"test": "a"})", "c"))),
+            "c.json: tests[0].from.test: goes round in a circle: a from b from c from a");
+  EXPECT_THAT(refusal(with_tests(d2(R"({"test": "a"})", "a"))), HasSubstr("a from a"));
+}
+
+TEST(Campaign, RefusesNamesThatAreNoFileNames) {
+  for (const char* name : {"", "a/b", "../x", "-x", ".x", "a b", "\\u00fc", "a\\u0000"}) {
+    std::string test = iso;
+    test.replace(test.find("iso"), 3, name);
+    EXPECT_THAT(refusal(with_tests(test)), StartsWith("c.json: tests[0].name: must be 1 to 100 letters"))
+        << name;
+  }
+  EXPECT_EQ(refusal(with_tests(iso + "," + iso)),
+            R"(c.json: tests[1].name: is taken by another test, got "iso")");
+}
+
+TEST(Campaign, RefusesSeedsThatAreNot) {
+  const auto seeds = [](const std::string& list) {
+    return refusal(R"({"name": "c", "seeds": )" + list + R"(, "tests": [)" + iso + "]}");
+  };
+  EXPECT_THAT(seeds("[1, 1]"), HasSubstr("seeds[1]: is given twice, got 1"));
+  EXPECT_THAT(seeds("[0.5]"), HasSubstr("seeds[0]: must be a whole number, got 0.5"));
+  EXPECT_THAT(seeds("[]"), HasSubstr("seeds: must have at least 1"));
+  EXPECT_THAT(seeds("[-1]"), HasSubstr("seeds[0]: must be >= 0"));
+  EXPECT_THAT(seeds("1"), HasSubstr("seeds: must be a list"));
+}
+
+TEST(Campaign, RefusesASeedItsOriginDoesNotHave) {
+  std::string only_first = iso;
+  only_first.insert(1, R"("seeds": [1], )");
+  EXPECT_EQ(refusal(with_tests(only_first + "," + d2(R"({"test": "iso"})"))),
+            R"(c.json: tests[1].seeds: must be some of the seeds of "iso", where it starts, got 2)");
+  std::string foreign = iso;
+  foreign.insert(1, R"("seeds": [3], )");
+  EXPECT_EQ(refusal(with_tests(foreign)),
+            "c.json: tests[0].seeds: must be some of the campaign's seeds, got 3");
+}
+
+TEST(Campaign, RefusesPathsThatCannotBeFollowed) {
+  const auto path = [](const std::string& segments) {
+    return refusal(with_tests(R"({"name": "a", "role": "fit", "path": )" + segments + "}"));
+  };
+  EXPECT_THAT(path(R"({"segments": [{"mode": "iso", "controls": {"nu": 0.64}}]})"),
+              HasSubstr("tests[0].path.segments[0]: has nothing to do"));
+  EXPECT_THAT(path(R"({"segments": [{"mode": "iso", "amount": 0.5}]})"), HasSubstr("must stay > 0 and < 1"));
+  EXPECT_THAT(path(R"({"start": {"nu": 0.64}, "segments": [{"mode": "iso", "amount": 0.1}]})"),
+              StartsWith("c.json: tests[0].path.start.nu: means nothing in a campaign"));
+  EXPECT_THAT(path(R"({"segments": [{"mode": "iso", "controls": {"nu": 1.5}}]})"),
+              HasSubstr("tests[0].path.segments[0].controls.nu: must be > 0 and < 1, got 1.5"));
+}
+
+TEST(Campaign, RefusesSnapshotsOffThePath) {
+  const auto snapshot = [](const std::string& request) {
+    std::string test = iso;
+    test.insert(1, R"("measure": {"snapshots": [)" + request + "]}, ");
+    return refusal(with_tests(test));
+  };
+  EXPECT_THAT(snapshot(R"({"segment": 2})"),
+              HasSubstr("tests[0].measure.snapshots[0].segment: must be less than 2"));
+  EXPECT_THAT(snapshot(R"({"segment": 0, "nu": 0.5})"),
+              StartsWith("c.json: tests[0].measure.snapshots[0].nu: must lie in"));
+}
+
+TEST(Campaign, RefusesWhatNobodyAskedFor) {
+  EXPECT_THAT(refusal(R"({"name": "c", "seed": [1], "seeds": [1], "tests": [)" + iso + "]}"),
+              StartsWith("c.json: seed: unknown key, did you mean seeds?"));
+  EXPECT_THAT(refusal(R"({"name": "c", "preparation": {"seed": 3}, "seeds": [1], "tests": [)" + iso + "]}"),
+              StartsWith("c.json: preparation.seed: must be left out"));
+  EXPECT_THAT(refusal(R"({"name": "c", "seeds": [1], "tests": []})"),
+              HasSubstr("tests: must have at least one entry"));
+  std::string test = iso;
+  test.replace(test.find("fit"), 3, "fits");
+  EXPECT_THAT(refusal(with_tests(test)),
+              HasSubstr(R"(tests[0].role: must be one of fit, predict, got "fits")"));
+}
+
+}  // namespace
+}  // namespace grainlaw::calibrate

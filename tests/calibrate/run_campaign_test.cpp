@@ -1,0 +1,230 @@
+// Running a campaign with tests that are made up: order, failures, interruption, resuming, full disks, and a
+// folder that is another's.
+#include "grainlaw/calibrate/run_campaign.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "campaign_examples.hpp"
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/file.hpp"
+
+namespace grainlaw::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+class RunCampaign : public testing::Test {
+ protected:
+  void SetUp() override {
+    dir = fs::temp_directory_path() / ("grainlaw-run-campaign-" + std::to_string(::getpid()));
+    fs::remove_all(dir);
+  }
+  void TearDown() override { fs::remove_all(dir); }
+
+  /// A test that writes a record at once, and notes that it ran.
+  dem::RunSummary write_record(const fs::path& part) {
+    const std::lock_guard lock(mutex);
+    ran.push_back(part.stem().string());
+    for (const char* name : {"scene.json", "provenance.json", "record.csv"}) write_file(part / name, "{}\n");
+    return {0.01, 1000, {}, false};
+  }
+
+  CampaignFolder open(CampaignFolder::Use use = CampaignFolder::Use::fresh) { return {campaign, dir, use}; }
+
+  RunOptions options() {
+    RunOptions result;
+    result.workers = 2;
+    result.run_test = [this](const dem::Scene&, const fs::path& part, const dem::RunHooks&) {
+      return write_record(part);
+    };
+    return result;
+  }
+
+  fs::path dir;
+  Campaign campaign = campaign_of(with_tests(iso + "," + d2(R"({"test": "iso", "nu": [0.7, 0.75]})")));
+  std::mutex mutex;
+  std::vector<std::string> ran;
+};
+
+TEST_F(RunCampaign, MakesEveryRecordAfterTheOneItStartsFrom) {
+  const auto result = run_campaign(campaign, open(), options());
+  EXPECT_EQ(result.finished, 6u);
+  EXPECT_TRUE(result.failed.empty());
+  ASSERT_EQ(ran.size(), 6u);
+  const auto place = [&](const std::string& name) {
+    return std::find(ran.begin(), ran.end(), name) - ran.begin();
+  };
+  for (const std::string seed : {"s1", "s2"})
+    for (const std::string test : {"d2-0.7-", "d2-0.75-"})
+      EXPECT_LT(place("iso-" + seed), place(test + seed));
+  EXPECT_TRUE(fs::exists(dir / "records/d2-0.75-s2/record.csv"));
+  EXPECT_FALSE(fs::exists(dir / "records/d2-0.75-s2.part"));
+  EXPECT_FALSE(fs::exists(dir / "failures.json"));
+}
+
+TEST_F(RunCampaign, RunsAsManyAtATimeAsAsked) {
+  auto o = options();
+  std::atomic<int> now{0}, most{0};
+  o.run_test = [&](const dem::Scene&, const fs::path& part, const dem::RunHooks&) {
+    most = std::max(most.load(), ++now);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    --now;
+    return write_record(part);
+  };
+  run_campaign(campaign, open(), o);
+  EXPECT_EQ(most, 2);
+}
+
+TEST_F(RunCampaign, AFailureStopsOnlyThoseThatStartFromIt) {
+  auto o = options();
+  o.run_test = [&](const dem::Scene&, const fs::path& part, const dem::RunHooks&) {
+    if (part.stem() == "iso-s1") throw Error("scene", "path", "the grains flew away");
+    return write_record(part);
+  };
+  std::vector<std::string> told;
+  o.hooks.failed = [&](const FailedJob& job) { told.push_back(job.record); };
+  const auto result = run_campaign(campaign, open(), o);
+  EXPECT_THAT(told, ElementsAre("iso-s1"));
+  ASSERT_EQ(result.failed.size(), 1u);
+  EXPECT_THAT(result.failed[0].error, HasSubstr("the grains flew away"));
+  EXPECT_THAT(result.failed[0].skipped, ElementsAre("d2-0.7-s1", "d2-0.75-s1"));
+  EXPECT_THAT(ran, UnorderedElementsAre("iso-s2", "d2-0.7-s2", "d2-0.75-s2"));
+  const Json failures = load_json(dir / "failures.json");
+  EXPECT_EQ(failures.at("failures").at(0).at("record"), "iso-s1");
+  // Tried again next time; then the list of failures goes.
+  ran.clear();
+  const auto again = run_campaign(campaign, open(CampaignFolder::Use::resume), options());
+  EXPECT_EQ(again.reused, 3u);
+  EXPECT_THAT(ran, UnorderedElementsAre("iso-s1", "d2-0.7-s1", "d2-0.75-s1"));
+  EXPECT_FALSE(fs::exists(dir / "failures.json"));
+}
+
+TEST_F(RunCampaign, StopsWhenToldAndGoesOnLater) {
+  std::atomic<bool> stop{false};
+  auto o = options();
+  o.hooks.stop = &stop;
+  o.run_test = [&](const dem::Scene&, const fs::path& part, const dem::RunHooks& hooks) {
+    if (!part.stem().string().starts_with("iso")) {
+      stop = true;
+      while (!hooks.stop->load()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return dem::RunSummary{0, 0, {}, true};
+    }
+    return write_record(part);
+  };
+  const auto result = run_campaign(campaign, open(), o);
+  EXPECT_TRUE(result.stopped);
+  EXPECT_LE(result.finished, 2u);
+  for (const auto& entry : fs::directory_iterator(dir / "records"))
+    EXPECT_NE(entry.path().extension(), ".part");
+  const std::size_t kept = result.finished;
+  ran.clear();
+  fs::create_directories(dir / "records/d2-0.7-s1.part/rubble");  // as a killed run leaves it
+  const auto again = run_campaign(campaign, open(CampaignFolder::Use::resume), options());
+  EXPECT_EQ(again.reused, kept);
+  EXPECT_EQ(again.finished, 6 - kept);
+  EXPECT_FALSE(fs::exists(dir / "records/d2-0.7-s1/rubble"));
+}
+
+TEST_F(RunCampaign, AFullDiskEndsTheCampaign) {
+  auto o = options();
+  o.run_test = [&](const dem::Scene&, const fs::path& part, const dem::RunHooks&) -> dem::RunSummary {
+    if (part.stem() == "iso-s1")
+      throw Error::cannot_write((part / "record.csv").string(), "No space left on device");
+    return write_record(part);
+  };
+  try {
+    run_campaign(campaign, open(), o);
+    FAIL() << "a full disk went unseen";
+  } catch (const Error& error) {
+    EXPECT_TRUE(error.unwritable());
+    EXPECT_THAT(error.what(), HasSubstr("No space left"));
+  }
+  EXPECT_FALSE(fs::exists(dir / "records/iso-s1.part"));
+}
+
+TEST_F(RunCampaign, TellsHowFarItIs) {
+  auto o = options();
+  o.workers = 1;
+  double fraction = 0;
+  std::size_t finished = 0;
+  o.hooks.finished = [&](const FinishedJob& job, const CampaignProgress& now) {
+    EXPECT_GT(now.fraction, fraction);
+    fraction = now.fraction;
+    EXPECT_EQ(now.finished, ++finished);
+    EXPECT_EQ(now.jobs, 6u);
+    EXPECT_EQ(job.summary.particle_steps, 1000u);
+  };
+  run_campaign(campaign, open(), o);
+  EXPECT_DOUBLE_EQ(fraction, 1);
+}
+
+TEST_F(RunCampaign, AFolderIsTakenOnlyOnce) {
+  const auto first = open();
+  try {
+    open(CampaignFolder::Use::resume);
+    FAIL() << "two in one folder";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("is in use by another grainlaw (process " + std::to_string(::getpid()) + ")"));
+  }
+}
+
+TEST_F(RunCampaign, ALockLeftBehindLocksNothing) {
+  { const auto first = open(); }
+  EXPECT_FALSE(fs::exists(dir / ".lock"));
+  write_file(dir / ".lock", "1");
+  EXPECT_NO_THROW(open(CampaignFolder::Use::resume));
+}
+
+TEST_F(RunCampaign, AnotherCampaignIsNeverOverwritten) {
+  { const auto first = open(); }
+  const std::string written = read_file(dir / "campaign.json");
+  const auto refusal = [&](CampaignFolder::Use use) {
+    try {
+      open(use);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(refusal(CampaignFolder::Use::fresh),
+              HasSubstr("holds this campaign already; go on with --resume"));
+  campaign.preparation.count = 200;
+  for (const auto use : {CampaignFolder::Use::fresh, CampaignFolder::Use::resume})
+    EXPECT_THAT(refusal(use),
+                HasSubstr("holds another campaign than c.json (preparation.count: 100 there, 200 here)"));
+  EXPECT_EQ(read_file(dir / "campaign.json"), written);
+}
+
+TEST_F(RunCampaign, AForeignFolderIsLeftAlone) {
+  fs::create_directories(dir);
+  write_file(dir / "thesis.tex", "precious");
+  EXPECT_THROW(open(CampaignFolder::Use::resume), Error);
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(dir)) names.push_back(entry.path().filename().string());
+  EXPECT_THAT(names, ElementsAre("thesis.tex"));
+}
+
+TEST_F(RunCampaign, AnIncompleteRecordIsNotTakenForOne) {
+  run_campaign(campaign, open(), options());
+  fs::remove(dir / "records/iso-s2/record.csv");
+  try {
+    run_campaign(campaign, open(CampaignFolder::Use::resume), options());
+    FAIL() << "an incomplete record was taken";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("iso-s2/record.csv: no such file; remove"));
+  }
+}
+
+}  // namespace
+}  // namespace grainlaw::calibrate
