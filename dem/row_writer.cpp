@@ -12,8 +12,9 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-constexpr double quasi_static = 1e-3;    // E_k/E_p of the thesis's data stays below (section 2.2.3)
-constexpr double jammed_share = 0.82;    // of the grains with four contacts: jammed (ch. 5)
+constexpr double quasi_static = 1e-3;  // E_k/E_p of the thesis's data stays below (section 2.2.3)
+constexpr double bearing_pressure =
+    1e-3;  // P* from which the grains bear load, be it at rest or by their motion
 constexpr double crystallising_w = 1.2;  // fits of the thesis leave out w below (Table 3.2)
 
 /// One row by column name.
@@ -79,8 +80,8 @@ void RowWriter::append(const Measurement& m, std::size_t segment, double progres
   row.set({"sxx", "syy", "szz", "syz", "sxz", "sxy"}, m.stress, per_unit);
   row.set({"Fxx", "Fyy", "Fzz", "Fyz", "Fxz", "Fxy"}, m.fabric, 1);
   record_.append(row.values());
-  if (m.f_NR < jammed_share || !(m.elastic > 0)) return;
-  ++jammed_;
+  if (pressure < bearing_pressure || !(m.elastic > 0)) return;
+  ++bearing_;
   if (ratio > quasi_static) ++restless_;
   if (ratio > 1) ++violent_;
   if (ratio > worst_ratio_) {
@@ -91,7 +92,7 @@ void RowWriter::append(const Measurement& m, std::size_t segment, double progres
 
 std::vector<std::string> RowWriter::warnings() const {
   std::vector<std::string> list;
-  const std::string rows = " of " + std::to_string(jammed_) + " jammed rows";
+  const std::string rows = " of " + std::to_string(bearing_) + " load-bearing rows";
   if (violent_ > 0)
     list.push_back("E_k/E_p is above 1 in " + std::to_string(violent_) + rows +
                    ": the deformation is far too fast to be quasi-static; lower the rate");

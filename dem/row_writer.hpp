@@ -35,7 +35,7 @@ class RowWriter {
   SignConvention sign_;
   double nu_start_;
   Record record_;
-  std::uint64_t jammed_ = 0, restless_ = 0, violent_ = 0;
+  std::uint64_t bearing_ = 0, restless_ = 0, violent_ = 0;
   double worst_ratio_ = 0, worst_nu_ = 0;
 };
 
