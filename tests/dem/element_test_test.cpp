@@ -193,7 +193,7 @@ TEST_F(ElementTest, GasWithoutContacts) {
 TEST_F(ElementTest, WarnsOfAFastRun) {
   const RunSummary summary = run_element_test(scene_of(R"({
     "preparation": {"count": 60, "nu": 0.7, "rate": 1e-3, "relax": {"duration": 50}},
-    "path": {"segments": [{"mode": "d2", "amount": 1, "rate": 0.3}]}, "measure": {"rows": 20}})"),
+    "path": {"segments": [{"mode": "d2", "amount": 1, "rate": 0.8}]}, "measure": {"rows": 20}})"),
                                               dir);
   ASSERT_EQ(summary.warnings.size(), 1u);
   EXPECT_THAT(summary.warnings[0], testing::HasSubstr("E_k/E_p is above 1 in"));
