@@ -134,8 +134,8 @@ Integrator::Handles::Handles(int size_, Tolerance tolerance)
 Integrator::Integrator(int size, Tolerance tolerance) {
   if (!(tolerance.rtol > 0 && std::isfinite(tolerance.rtol)))
     throw Error("", "rtol", "must be > 0, got " + to_text(tolerance.rtol));
-  if (!(tolerance.atol >= 0 && std::isfinite(tolerance.atol)))
-    throw Error("", "atol", "must be >= 0, got " + to_text(tolerance.atol));
+  if (!(tolerance.atol > 0 && std::isfinite(tolerance.atol)))  // a variable may be 0
+    throw Error("", "atol", "must be > 0, got " + to_text(tolerance.atol));
   handles_ = std::make_unique<Handles>(size, tolerance);
 }
 

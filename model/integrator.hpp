@@ -27,7 +27,7 @@ struct System {
 
 class Integrator {
  public:
-  /// `size` variables. Throws Error for a tolerance that is not > 0 (rtol) or >= 0 (atol).
+  /// `size` variables. Throws Error for a tolerance that is not > 0.
   Integrator(int size, Tolerance tolerance);
   ~Integrator();
   Integrator(Integrator&&) noexcept;

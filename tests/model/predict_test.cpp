@@ -1,0 +1,195 @@
+// Predictions as records: columns, rows, samples of another record, refusals, statuses.
+#include "grainlaw/model/predict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "walks.hpp"
+
+namespace grainlaw::model {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* mixed = R"({"start": {"nu": 0.69}, "segments": [
+    {"mode": "uni", "amount": 0.05}, {"mode": "relax"}, {"mode": "d3", "amount": -0.1}, {"mode": "iso", "amount": 0.02}]})";
+
+std::string refused(const std::string& segments) {
+  return refusal([&] { walk(R"({"start": {"nu": 0.7}, "segments": [)" + segments + "]}", Form::reduced); });
+}
+
+TEST(Predict, WritesTheAgreedColumnsAndRows) {
+  for (const Form form : {Form::reduced_closed, Form::reduced, Form::coupled}) {
+    const Prediction p = walk(mixed, form, 10);
+    EXPECT_EQ(p.record.columns(), prediction_columns());
+    ASSERT_EQ(p.record.rows(), 1U + 10 + 1 + 10 + 10);
+    EXPECT_EQ(p.record["segment"].front(), 0);
+    EXPECT_EQ(p.record["segment"][11], 1);
+    EXPECT_EQ(last(p, "segment"), 3);
+    EXPECT_NEAR(last(p, "eps_vol"), 0.07, 1e-14);
+    EXPECT_NEAR(last(p, "eps_dev"), -0.05, 1e-14);
+    EXPECT_NEAR(last(p, "nu"), 0.69 * std::exp(0.07), 1e-14);
+    for (std::size_t i = 0; i < p.record.rows(); ++i) {
+      const auto at = [&](const char* column) { return p.record[column][i]; };
+      EXPECT_NEAR(at("nu"), 0.69 * std::exp(at("eps_vol")), 1e-14);
+      EXPECT_NEAR(at("s_dev"), at("sigma_dev") / at("P"), 1e-15);
+      EXPECT_NEAR(at("C"), at("f_NR") * at("C_star"), 1e-14);
+      EXPECT_NEAR(at("F_v"), 1.22 * at("nu") * at("C"), 1e-14);
+      EXPECT_EQ(at("phi_J"), 0.6649);
+    }
+    EXPECT_EQ(p.status.code, Status::Code::ok);
+  }
+}
+
+TEST(Predict, UnjammedRowsCarryNothing) {
+  for (const Form form : {Form::reduced_closed, Form::reduced, Form::coupled}) {
+    const Prediction p =
+        walk(R"({"start": {"nu": 0.64}, "segments": [{"mode": "iso", "controls": {"nu": 0.82}},
+        {"mode": "iso", "controls": {"nu": 0.64}}]})",
+             form);
+    int unjammed = 0;
+    for (std::size_t i = 0; i < p.record.rows(); ++i) {
+      const bool jammed = p.record["nu"][i] > 0.665;
+      EXPECT_EQ(p.record["P"][i] > 0, jammed);
+      EXPECT_EQ(std::isnan(p.record["s_dev"][i]), !jammed);
+      EXPECT_EQ(std::isnan(p.record["C_star"][i]), !jammed);
+      EXPECT_EQ(p.record["F_v"][i] > 4, jammed);
+      unjammed += !jammed;
+    }
+    EXPECT_GT(unjammed, 4);
+    EXPECT_EQ(p.status.code, Status::Code::unjammed);
+    EXPECT_THAT(p.status.message, HasSubstr("nu = 0.64"));
+    ASSERT_EQ(p.warnings.size(), 2U);
+    EXPECT_THAT(p.warnings[0], HasSubstr("jams at nu = 0.6649"));
+    EXPECT_THAT(p.warnings[1], HasSubstr("unjams"));
+    EXPECT_NO_THROW(p.record.to_csv());
+  }
+}
+
+TEST(Predict, FollowsTheRowsOfAnotherRecord) {
+  for (const Form form : {Form::reduced_closed, Form::reduced, Form::coupled}) {
+    const Path path = path_of(mixed);
+    const Prediction fine = walk(mixed, form, 12);
+    Record rows({"segment", "eps_vol", "eps_dev"});
+    for (const std::size_t i : {0, 3, 6, 12, 13, 17, 25, 26, 37})
+      rows.append({fine.record["segment"][i], fine.record["eps_vol"][i], fine.record["eps_dev"][i]});
+    const auto samples = samples_of(rows, path, 0.69);
+    const Prediction p = predict(thesis(), path, samples, {form, tight_rtol, tight_atol, 1});
+    ASSERT_EQ(p.record.rows(), rows.rows());
+    std::size_t row = 0;
+    for (const std::size_t i : {0, 3, 6, 12, 13, 17, 25, 26, 37}) {
+      for (const char* column : {"segment", "eps_vol", "eps_dev", "nu", "P", "sigma_dev", "F_dev"})
+        EXPECT_NEAR(p.record[column][row], fine.record[column][i], 1e-11) << column << " in row " << i;
+      ++row;
+    }
+  }
+}
+
+TEST(Predict, ARowOffThePathIsRefused) {
+  const Path path = path_of(mixed);
+  const auto refusal_of = [&](const std::vector<double>& row) {
+    Record rows({"segment", "eps_vol", "eps_dev"});
+    rows.append({0, 0, 0});
+    rows.append(row);
+    return refusal([&] { samples_of(rows, path, 0.69); });
+  };
+  EXPECT_EQ(refusal_of({0, 0.0502, 0.0502}), "accepted");  // a time step too far
+  EXPECT_THAT(refusal_of({0, 0.06, 0.06}), HasSubstr("row 2 of the record is not on segment 0"));
+  EXPECT_THAT(refusal_of({4, 0.06, 0.06}), HasSubstr("the path has 4"));
+}
+
+TEST(Predict, SamplesMustBeInOrder) {
+  const auto refused_samples = [](const std::vector<Sample>& samples) {
+    return refusal([&] { predict(thesis(), path_of(mixed), samples, {}); });
+  };
+  EXPECT_EQ(refused_samples({{0, 0.5}, {0, 0.5}, {2, 0.1}}), "accepted");
+  EXPECT_THAT(refused_samples({{0, 0.5}, {0, 0.4}}), HasSubstr("in order"));
+  EXPECT_THAT(refused_samples({{2, 0.5}, {1, 0.6}}), HasSubstr("in order"));
+  EXPECT_THAT(refused_samples({{4, 0.5}}), HasSubstr("leg 4"));
+  EXPECT_THAT(refused_samples({{0, 1.5}}), HasSubstr("progress 1.5"));
+}
+
+TEST(Predict, RefusesAnotherDirectionOfShear) {
+  EXPECT_THAT(refused(R"({"mode": "uni", "amount": 0.02}, {"mode": "d2", "amount": 0.1})"),
+              HasSubstr("p.json: segments[1]: mode d2 is not coaxial with uni"));
+  EXPECT_THAT(
+      refused(
+          R"({"mode": "d2", "amount": 0.1}, {"mode": "iso", "amount": 0.1}, {"mode": "d3", "amount": 0.1})"),
+      HasSubstr("segments[2]"));
+  EXPECT_THAT(refused(R"({"mode": "d2", "amount": 0.1}, {"mode": "components", "strain": [0.1, 0, 0]})"),
+              HasSubstr("not coaxial"));
+  EXPECT_EQ(
+      refused(
+          R"({"mode": "uni", "amount": 0.02}, {"mode": "iso", "amount": -0.01}, {"mode": "d3", "amount": -0.1})"),
+      "accepted");
+  EXPECT_EQ(
+      refused(R"({"mode": "d2", "amount": 0.1}, {"mode": "components", "strain": [0.11, -0.09, 0.01]})"),
+      "accepted");
+}
+
+TEST(Predict, ComponentsAreTheModesTheySpell) {
+  const Prediction mode =
+      walk(R"({"start": {"nu": 0.7}, "segments": [{"mode": "uni", "amount": 0.05}]})", Form::coupled);
+  const Prediction spelled =
+      walk(R"({"start": {"nu": 0.7}, "segments": [{"mode": "components", "strain": [0, 0, 0.05]}]})",
+           Form::coupled);
+  for (const char* column : {"eps_dev", "P", "sigma_dev", "F_dev"})
+    EXPECT_LT(difference(mode, spelled, column), 1e-13) << column;
+}
+
+TEST(Predict, RelaxRestartsTheDirection) {
+  const std::string before = R"({"start": {"nu": 0.711}, "segments": [{"mode": "d2", "amount": 0.05},)";
+  const Prediction rested =
+      walk(before + R"({"mode": "relax"}, {"mode": "d2", "amount": 0.01}]})", Form::coupled, 1);
+  const Prediction straight = walk(before + R"({"mode": "d2", "amount": 0.01}]})", Form::coupled, 1);
+  ASSERT_EQ(rested.record.rows(), 4U);
+  for (const char* column : {"P", "sigma_dev", "F_dev"}) {
+    EXPECT_EQ(rested.record[column][1], rested.record[column][2])
+        << column;                                                      // the rest itself changes nothing
+    EXPECT_GT(last(rested, column), last(straight, column)) << column;  // what follows begins elastic
+  }
+}
+
+TEST(Predict, FailureKeepsTheRowsBefore) {
+  ParameterSet set = thesis();
+  set.shear->s_max->Q_max.value = -0.05;
+  const Prediction p = walk(R"({"start": {"nu": 0.7}, "segments": [{"mode": "d2", "amount": 0.1},
+      {"mode": "relax"}, {"mode": "d2", "amount": 0.1}, {"mode": "components", "strain": [0.06, 0.12, 0.09]}]})",
+                            Form::coupled, 10, set);
+  EXPECT_EQ(p.status.code, Status::Code::failed);
+  EXPECT_THAT(p.status.message, HasSubstr("segments[3]: s_max is -0.0"));
+  EXPECT_EQ(p.record.rows(), 1U + 10 + 1 + 10);
+}
+
+TEST(Predict, SaysThatPressureIsPumped) {
+  const auto warnings = [](int repeats, Form form) {
+    return walk(R"({"start": {"nu": 0.711}, "segments": [{"repeat": )" + std::to_string(repeats) +
+                    R"(, "segments": [{"mode": "d2", "amount": 0.1}, {"mode": "d2", "amount": -0.1}]}]})",
+                form, 1)
+        .warnings;
+  };
+  EXPECT_TRUE(warnings(1, Form::coupled).empty());
+  EXPECT_TRUE(warnings(5, Form::reduced).empty());
+  ASSERT_EQ(warnings(5, Form::coupled).size(), 1U);
+  EXPECT_THAT(warnings(5, Form::coupled)[0], HasSubstr("9 reversals"));
+}
+
+TEST(Predict, EveryThesisMaterialPredicts) {
+  for (const auto& entry : std::filesystem::directory_iterator(thesis_file().parent_path())) {
+    if (entry.path().extension() != ".json") continue;
+    const ParameterSet set = ParameterSet::load(entry.path());
+    if (!set.shear->beta_s) continue;  // w = 1
+    for (const Form form : {Form::reduced_closed, Form::reduced, Form::coupled}) {
+      const Prediction p =
+          walk(R"({"start": {"nu": 0.64}, "segments": [{"mode": "uni", "controls": {"nu": 0.8}},
+          {"mode": "uni", "controls": {"nu": 0.72}}]})",
+               form, 20, set);
+      EXPECT_EQ(p.status.code, Status::Code::ok) << entry.path() << p.status.message;
+      EXPECT_LT(last(p, "s_dev"), 0) << entry.path();
+      EXPECT_NO_THROW(p.record.to_csv());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace grainlaw::model

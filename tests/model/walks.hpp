@@ -1,0 +1,30 @@
+// Walking the law in a test: predictions from a text, and the state at the end of a record.
+#pragma once
+
+#include <string>
+
+#include "checks.hpp"
+#include "grainlaw/model/predict.hpp"
+
+namespace grainlaw::model {
+
+constexpr double tight_rtol = 1e-11, tight_atol = 1e-14;
+
+inline Prediction walk(const std::string& path, Form form, int rows = 20,
+                       const ParameterSet& parameters = thesis()) {
+  return predict(parameters, path_of(path), {form, tight_rtol, tight_atol, rows});
+}
+
+inline double last(const Prediction& prediction, const char* column) {
+  return prediction.record[column].back();
+}
+
+/// Largest |a - b| over a column.
+inline double difference(const Prediction& a, const Prediction& b, const char* column) {
+  double most = a.record.rows() == b.record.rows() ? 0 : INFINITY;
+  for (std::size_t i = 0; i < a.record.rows() && std::isfinite(most); ++i)
+    most = std::max(most, std::abs(a.record[column][i] - b.record[column][i]));
+  return most;
+}
+
+}  // namespace grainlaw::model
