@@ -95,7 +95,7 @@ std::vector<std::string> RowWriter::warnings() const {
   const std::string rows = " of " + std::to_string(bearing_) + " load-bearing rows";
   if (violent_ > 0)
     list.push_back("E_k/E_p is above 1 in " + std::to_string(violent_) + rows +
-                   ": the deformation is far too fast to be quasi-static; lower the rate");
+                   ": the grains fly rather than rest on one another; lower the rate, or relax first");
   else if (restless_ > 0)
     list.push_back("E_k/E_p is above 1e-3 in " + std::to_string(restless_) + rows + " (largest " +
                    short_text(worst_ratio_) + ", at nu = " + short_text(worst_nu_) +

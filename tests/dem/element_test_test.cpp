@@ -190,14 +190,22 @@ TEST_F(ElementTest, GasWithoutContacts) {
   EXPECT_EQ(read_file(dir / "record.csv").find("nan"), std::string::npos);
 }
 
-TEST_F(ElementTest, WarnsOfAFastRun) {
-  const RunSummary summary = run_element_test(scene_of(R"({
+TEST_F(ElementTest, WarnsOfARestlessAndOfAViolentRun) {
+  const RunSummary restless = run_element_test(scene_of(R"({
     "preparation": {"count": 60, "nu": 0.7, "rate": 1e-3, "relax": {"duration": 50}},
-    "path": {"segments": [{"mode": "d2", "amount": 1, "rate": 0.8}]}, "measure": {"rows": 20}})"),
-                                              dir);
-  ASSERT_EQ(summary.warnings.size(), 1u);
-  EXPECT_THAT(summary.warnings[0], testing::HasSubstr("E_k/E_p is above 1 in"));
-  EXPECT_THAT(read_file(dir / "provenance.json"), testing::HasSubstr("E_k/E_p is above 1 in"));
+    "path": {"segments": [{"mode": "d2", "amount": 0.1, "rate": 3e-2}]}, "measure": {"rows": 10}})"),
+                                               dir / "a");
+  ASSERT_EQ(restless.warnings.size(), 1u);
+  EXPECT_THAT(restless.warnings[0],
+              testing::HasSubstr("E_k/E_p is above 1e-3 in 10 of 11 load-bearing rows (largest"));
+  // An elastic gas that keeps its speed of 1 mm/us, under a pressure of collisions.
+  const RunSummary violent = run_element_test(scene_of(R"({"material": {"gamma": 0, "gamma_b": 0},
+    "preparation": {"count": 60, "nu": 0.5, "speed": 1, "rate": 1e-2, "relax": {"duration": 10}},
+    "path": {"segments": [{"mode": "d2", "amount": 0.1, "rate": 3e-2}]}, "measure": {"rows": 10}})"),
+                                              dir / "b");
+  ASSERT_EQ(violent.warnings.size(), 1u);
+  EXPECT_THAT(violent.warnings[0], testing::HasSubstr("E_k/E_p is above 1 in"));
+  EXPECT_THAT(read_file(dir / "b" / "provenance.json"), testing::HasSubstr("E_k/E_p is above 1 in"));
 }
 
 TEST_F(ElementTest, WarnsOfCrystallisation) {
