@@ -1,0 +1,105 @@
+// The schemas state the defaults and columns that the program has.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/dem/provenance.hpp"
+#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/element/json.hpp"
+#include "grainlaw/element/path.hpp"
+#include "grainlaw/element/record.hpp"
+
+namespace grainlaw::tests {
+namespace {
+
+Json schema(const std::string& kind) {
+  return load_json(std::filesystem::path(GRAINLAW_DATA_DIR) / "schema" / (kind + ".schema.json"));
+}
+
+std::vector<std::string> keys(const Json& object) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : object.items()) names.push_back(name);
+  return names;
+}
+
+/// The default that a property states, itself or by its reference into the same file or path.schema.json.
+Json default_of(const Json& property, const Json& file) {
+  if (property.contains("default")) return property["default"];
+  const std::string reference = property.at("$ref");
+  const auto hash = reference.find('#');
+  const Json other = hash == 0 ? file : schema(reference.substr(0, reference.find('.')));
+  return default_of(other.at(Json::json_pointer(reference.substr(hash + 1))), other);
+}
+
+/// Every key of `written` but those excepted has this default in `properties`.
+void expect_defaults(const Json& written, const Json& properties, const Json& file,
+                     const std::set<std::string>& except = {}) {
+  for (const auto& [key, value] : written.items())
+    if (!except.contains(key)) {
+      EXPECT_EQ(default_of(properties.at(key), file), value) << key;
+    }
+}
+
+dem::Scene plain_scene() {
+  const Json json = Json::parse(R"({"path": {"segments": [{"mode": "iso", "amount": 0.1}]}})");
+  return dem::Scene::read(Reader(json, "scene.json"), ".");
+}
+
+TEST(Schema, DefaultsOfAScene) {
+  const Json file = schema("scene"), written = plain_scene().to_json();
+  expect_defaults(written["material"], file["$defs"]["material"]["properties"], file);
+  expect_defaults(written["measure"], file["$defs"]["measure"]["properties"], file);
+  const Json packing = file["$defs"]["packing_keys"]["properties"];
+  expect_defaults(written["preparation"], packing, file, {"seed", "relax"});
+  expect_defaults(written["preparation"]["relax"], packing["relax"]["properties"], file);
+  EXPECT_EQ(file["$defs"]["new_packing"]["properties"]["seed"]["default"], written["preparation"]["seed"]);
+  EXPECT_EQ(keys(file["properties"]), keys(written));
+}
+
+TEST(Schema, DefaultsOfAPath) {
+  const Json file = schema("path");
+  const auto path_of = [](const char* text) {
+    return Path::read(Reader(Json::parse(text), "path.json")).segments.at(0);
+  };
+  const auto relax = path_of(R"({"segments": [{"mode": "relax"}]})");
+  EXPECT_EQ(file["$defs"]["tolerance"]["default"], relax.tolerance);
+  EXPECT_EQ(file["$defs"]["longest"]["default"], *relax.duration);
+  const std::string rate = file["$defs"]["rate"]["description"],
+                    profile = file["$defs"]["profile"]["description"];
+  const auto iso = path_of(R"({"segments": [{"mode": "iso", "amount": 0.1}]})"),
+             uni = path_of(R"({"segments": [{"mode": "uni", "amount": 0.1}]})"),
+             d2 = path_of(R"({"segments": [{"mode": "d2", "amount": 0.1}]})"),
+             d3 = path_of(R"({"segments": [{"mode": "d3", "amount": 0.1}]})");
+  EXPECT_THAT(rate, testing::HasSubstr("Default: 5.0e-6 for iso, else 2.839e-5."));
+  EXPECT_EQ(iso.rate, 5.0e-6);
+  for (const auto& other : {uni, d2, d3}) EXPECT_EQ(other.rate, 2.839e-5);
+  EXPECT_THAT(profile, testing::HasSubstr("Default: constant for d2 and d3, else cosine."));
+  for (const auto& shear : {d2, d3}) EXPECT_EQ(shear.profile, Profile::constant);
+  for (const auto& other : {iso, uni}) EXPECT_EQ(other.profile, Profile::cosine);
+}
+
+TEST(Schema, KeysOfACampaign) {
+  const Json file = schema("campaign");
+  const auto campaign = calibrate::Campaign::load(std::string(GRAINLAW_DATA_DIR) + "/campaigns/quick.json");
+  const Json written = campaign.to_json();
+  EXPECT_EQ(keys(file["properties"]), keys(written));
+  EXPECT_EQ(keys(schema("scene")["$defs"]["packing_keys"]["properties"]), keys(written["preparation"]));
+}
+
+TEST(Schema, KeysOfProvenance) {
+  const Json file = schema("provenance"), written = dem::Provenance::begin(plain_scene()).to_json();
+  EXPECT_EQ(keys(file["properties"]), keys(written));
+  EXPECT_EQ(file["required"].get<std::vector<std::string>>(), keys(written));
+}
+
+TEST(Schema, ColumnsOfARecord) {
+  const Json file = schema("record");
+  EXPECT_EQ(keys(file["properties"]), record_columns());
+  EXPECT_EQ(file["required"].get<std::vector<std::string>>(), prediction_columns());
+}
+
+}  // namespace
+}  // namespace grainlaw::tests
