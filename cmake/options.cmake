@@ -8,6 +8,9 @@ cmake_dependent_option(GRAINLAW_APPS "Build the program grainlaw (needs CLI11, s
 option(GRAINLAW_TESTS "Build the tests (needs GoogleTest)" ON)
 option(GRAINLAW_SANITIZE "AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
 option(GRAINLAW_WERROR "Warnings are errors" OFF)
+# Halves the time to build, but a compiler cache cannot see through it.
+cmake_dependent_option(GRAINLAW_PRECOMPILE "Precompile the headers that nearly every file includes" ON
+                       "NOT CMAKE_CXX_COMPILER_LAUNCHER" OFF)
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
@@ -30,6 +33,19 @@ if(GRAINLAW_SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
+# grainlaw_precompile(target HEADERS): these and the ones that every room includes, once for all sources of the target.
+function(grainlaw_precompile target)
+  if(GRAINLAW_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE <nlohmann/json.hpp> <algorithm> <array> <cmath> <cstdint> <filesystem>
+                              <functional> <map> <optional> <sstream> <string> <variant> <vector> ${ARGN})
+  endif()
+endfunction()
+
+# grainlaw_quick_to_compile(target): for code in which no time is spent, a quarter of the compiler's.
+function(grainlaw_quick_to_compile target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # grainlaw_library(room): the sources of this folder as grainlaw::room.
 function(grainlaw_library room)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
@@ -40,4 +56,5 @@ function(grainlaw_library room)
                                                      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(grainlaw_${room} PUBLIC cxx_std_20)
   target_link_libraries(grainlaw_${room} PRIVATE $<BUILD_INTERFACE:grainlaw_warnings>)
+  grainlaw_precompile(grainlaw_${room})
 endfunction()
