@@ -5,6 +5,7 @@
     check_schemas.py DATA examples          every example under DATA obeys its schema
     check_schemas.py DATA documents TABLE…  tables of documents to accept and to reject (documents_test.cpp reads the same)
     check_schemas.py DATA written DIR       files that grainlaw wrote into DIR obey their schemas
+    check_schemas.py DATA mutants DIR       the readers and the schemas agree on documents spoilt in one place
 """
 import copy
 import csv
@@ -153,6 +154,43 @@ def check_documents(schemas, data, files):
     return faults, count
 
 
+# What only a reader can refuse, because it compares keys or walks the path; in its words.
+BEYOND_A_SCHEMA = (
+    "has nothing to do: its target is the state already reached",
+    "takes the volume fraction to",
+    "makes the path longer than",
+    "overdamps the contact of the two smallest grains",
+    "preparation.nu: must be > 0.3 and < 1",
+    "preparation.nu: must be > 0.45 and < 1",
+    "must be preparation.nu =",
+    "preparation.frame already chooses the state",
+    "must be a segment of the path",
+    "so it has no such place",
+    "must lie in segment",
+    "must be some of the campaign's seeds",
+    "must be the name of a test",
+    "must be a volume fraction that",
+    "the number of segments",
+)
+
+
+def check_mutants(schemas, folder):
+    faults, count = [], 0
+    for file in sorted(folder.glob("*.json")):
+        table = load(file)
+        validator = schemas.validator(f"{file.stem}.schema.json")
+        for mutant in table["mutants"]:
+            count += 1
+            good = validator.is_valid(edited(table["bases"][mutant["base"]], mutant))
+            if good == (mutant["said"] == ""):
+                continue
+            if not good or not any(text in mutant["said"] for text in BEYOND_A_SCHEMA):
+                change = {key: mutant[key] for key in ("set", "remove") if key in mutant}
+                faults.append(f"{file.name}: {change}: the schema says {'good' if good else 'bad'}, "
+                              f"the program says {mutant['said'] or 'good'}")
+    return faults, count
+
+
 def rows_of(file):
     """The rows of a record; an empty field is null."""
     with open(file, newline="", encoding="utf-8") as stream:
@@ -183,7 +221,8 @@ def main():
     data, what, rest = pathlib.Path(sys.argv[1]), sys.argv[2], [pathlib.Path(arg) for arg in sys.argv[3:]]
     schemas = Schemas(data / "schema")
     checks = {"schemas": lambda: check_schemas(schemas), "examples": lambda: check_examples(schemas, data),
-              "documents": lambda: check_documents(schemas, data, rest), "written": lambda: check_written(schemas, *rest)}
+              "documents": lambda: check_documents(schemas, data, rest), "written": lambda: check_written(schemas, *rest),
+              "mutants": lambda: check_mutants(schemas, *rest)}
     faults, count = checks[what]()
     if count == 0:
         faults.append("nothing to check")

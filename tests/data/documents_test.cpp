@@ -1,5 +1,7 @@
 // The readers and the schemas accept and refuse the same documents: this test holds the tables in documents/
 // against the readers, check_schemas.py holds them against the schemas.
+#include "documents.hpp"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -18,18 +20,6 @@ namespace {
 const std::filesystem::path data = GRAINLAW_DATA_DIR;
 const std::filesystem::path documents = GRAINLAW_DOCUMENTS_DIR;
 
-/// The base document with the changes of a case, JSON Pointers to set and to remove.
-Json edited(Json document, const Json& change) {
-  if (change.contains("remove"))
-    for (const auto& pointer : change["remove"]) {
-      const Json::json_pointer at(pointer.get<std::string>());
-      document.at(at.parent_pointer()).erase(at.back());
-    }
-  if (change.contains("set"))
-    for (const auto& [pointer, value] : change["set"].items()) document[Json::json_pointer(pointer)] = value;
-  return document;
-}
-
 using Read = std::function<void(Reader)>;
 
 /// What a reader says of a document: empty if it accepts it.
@@ -45,8 +35,7 @@ std::string complaint(const Read& read, const Json& document, const std::string&
 
 void check(const std::string& kind, const Read& read) {
   const Json table = load_json(documents / (kind + ".json"));
-  const Json base =
-      table["base"].is_string() ? load_json(data / table["base"].get<std::string>()) : table["base"];
+  const Json base = base_of(table, data);
   for (const char* verdict : {"accept", "reject", "reject by program"})
     for (const auto& one : table.at(verdict)) {
       const std::string said = complaint(read, edited(base, one), kind + ".json");

@@ -1,11 +1,12 @@
-// write_everything DATA DIR: writes one of everything grainlaw writes into DIR, for check_schemas.py to hold
-// against the schemas.
+// write_everything DATA DOCUMENTS DIR: writes one of everything grainlaw writes into DIR/files, and what the
+// readers say of spoilt documents into DIR/mutants, for check_schemas.py to hold against the schemas.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "../documents.hpp"
 #include "grainlaw/calibrate/campaign.hpp"
 #include "grainlaw/dem/element_test.hpp"
 #include "grainlaw/dem/scene.hpp"
@@ -14,6 +15,7 @@
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/model/parameters.hpp"
 #include "grainlaw/model/predict.hpp"
+#include "mutants.hpp"
 
 namespace {
 
@@ -62,19 +64,45 @@ void run_element_tests(const fs::path& dir) {
   dem::run_element_test(dem::Scene::read(Reader(second, "second"), dir), dir / "second");
 }
 
+/// The documents that a table accepts.
+std::vector<Json> good_documents(const Json& table, const Json& base) {
+  std::vector<Json> list;
+  for (const Json& one : table.at("accept")) list.push_back(tests::edited(base, one));
+  return list;
+}
+
+void write_mutants(const fs::path& data, const fs::path& documents, const fs::path& dir) {
+  const auto write = [&](const std::string& kind, const std::vector<Json>& good, const tests::Read& read) {
+    write_file(dir / (kind + ".json"), tests::mutants(good, kind + ".json", read).dump(1));
+  };
+  const auto good = [&](const std::string& kind) {
+    const Json table = load_json(documents / (kind + ".json"));
+    return good_documents(table, tests::base_of(table, data));
+  };
+  write("path", good("path"), [](Reader reader) { Path::read(reader); });
+  write("scene", good("scene"), [](Reader reader) { dem::Scene::read(reader, "."); });
+  write("campaign", good("campaign"), [](Reader reader) { calibrate::Campaign::read(reader); });
+  Json one_row = load_json(data / "thesis" / "parameters.json");  // the other rows are like these
+  for (const char* mode : {"uni", "d2", "d3"}) one_row["isotropic"].erase(mode);
+  for (const char* quantity : {"beta_s", "F_max", "beta_F"}) one_row["shear"].erase(quantity);
+  write("parameters", {one_row}, [](Reader reader) { model::ParameterSet::read(reader); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fputs("usage: write_everything DATA DIR\n", stderr);
+  if (argc != 4) {
+    std::fputs("usage: write_everything DATA DOCUMENTS DIR\n", stderr);
     return 2;
   }
   try {
-    const fs::path dir = argv[2];
+    const fs::path dir = argv[3];
     fs::remove_all(dir);
-    fs::create_directories(dir);
-    write_examples(argv[1], dir);
-    run_element_tests(dir);
+    fs::create_directories(dir / "files");
+    fs::create_directories(dir / "mutants");
+    write_examples(argv[1], dir / "files");
+    run_element_tests(dir / "files");
+    write_mutants(argv[1], argv[2], dir / "mutants");
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
