@@ -15,6 +15,10 @@ constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 /// smallest_pressure.
 constexpr double first_pressure = 10 * smallest_pressure;
 
+/// The coupled form keeps this much above the density at which its contacts begin: with the contact law of a
+/// row (its nu_c not the one of the moduli) B is infinite there, though its integral is not.
+constexpr double contact_margin = 1 + 1e-9;
+
 /// |1 - q x/x_sat|, the scale of S and S_F in a direction. At saturation there is no elastic part: plastic
 /// from the start. The floor keeps that limit finite; an elastic part this short (in strain, it over beta) is
 /// none.
@@ -58,7 +62,7 @@ const Laws& laws_of(const Law& law) {
 
 double unjamming_density(const Law& law) {
   const Laws& laws = laws_of(law);
-  return form_of(law) == Form::coupled ? laws.contacts.nu_c : jamming_density(laws.pressure);
+  return form_of(law) == Form::coupled ? laws.contacts.nu_c * contact_margin : jamming_density(laws.pressure);
 }
 
 void unjam(const Law& law, State& state) {
@@ -72,7 +76,7 @@ double jamming_density(const Law& law, const State& state) {
   const Laws& laws = laws_of(law);
   // At the density itself P* is 0 and s_dev has no value; the next number above it will do.
   if (form_of(law) != Form::coupled) return jamming_density(laws.pressure) * (1 + 1e-12);
-  const double nu = std::max(state.phi_J, laws.contacts.nu_c);
+  const double nu = std::max(state.phi_J, unjamming_density(law));
   return nu * std::exp(first_pressure / bulk_modulus(laws.moduli, laws.contacts, nu));
 }
 

@@ -99,7 +99,8 @@ void tell_drift(const Law& law, const std::vector<Leg>& legs, std::vector<std::s
   }
   if (reversals >= 4)
     warnings.push_back(
-        "Eq. 4.16 gains pressure with every half cycle of shear without a bound (about 1 % at nu = 0.711); " +
+        "Eq. 4.16 gains pressure with every half cycle of shear without a bound (0.1 to 0.9 % at nu = 0.711, "
+        "more for a higher start P); " +
         std::to_string(reversals) + " reversals on this path");
 }
 

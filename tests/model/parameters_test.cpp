@@ -72,6 +72,8 @@ TEST(Parameters, AGroupMayBeAbsentUntilItIsNeeded) {
 TEST(Parameters, ErrorsNameFileKeyAndValue) {
   EXPECT_THAT(refused([](Json& j) { j["isotropic"]["iso"]["C2"] = 1; }),
               AllOf(HasSubstr("parameters.json: isotropic.iso.C2"), HasSubstr("unknown key")));
+  EXPECT_THAT(refused([](Json& j) { j["shear"]["s_max"]["Q_v"]["sterr"] = 0.1; }),
+              HasSubstr("shear.s_max.Q_v.sterr: unknown key, did you mean stderr?"));
   EXPECT_THAT(refused([](Json& j) { j["isotropic"]["d4"] = Json::object(); }), HasSubstr("isotropic.d4"));
   EXPECT_THAT(refused([](Json& j) { j["shear"]["s_max"]["Q_max"]["value"] = "big"; }),
               AllOf(HasSubstr("parameters.json: shear.s_max.Q_max.value"), HasSubstr("\"big\"")));

@@ -127,6 +127,23 @@ TEST(Point, ShearAloneMayUnjamTheCoupledFormAndCannotJamIt) {
   EXPECT_GT(point.state().P, 0.01);
 }
 
+TEST(Point, ContactsMayBeginWithAnInfiniteBulkModulus) {
+  ParameterSet set = thesis();
+  set.closure.contacts_at_moduli_nu_c = false;  // contacts from 0.6601 on, the strain of B from 0.658
+  const Law law = make_law(set, Form::coupled);
+  State state;
+  state.nu = 0.67;
+  state.P = 0.01;
+  state.jammed = true;
+  MaterialPoint point(law, state, {1e-10, 1e-13});
+  const PressureCurve integral{laws_of(law).contacts, 0.0425, 0.2, 0.658};
+  ASSERT_FALSE(point.walk(-0.02, 0).failed());
+  expect_unjammed(point.state());
+  EXPECT_NEAR(point.events()[0].nu, 0.6601, 1e-8);
+  ASSERT_FALSE(point.walk(0.02, 0).failed());
+  EXPECT_NEAR(point.state().P, pressure(integral, 0.67) - pressure(integral, 0.6601 * (1 + 1e-9)), 3e-8);
+}
+
 TEST(Point, JamsOnTheSolutionForVanishingPressure) {
   // The same compression begun at jamming, and begun a little above it from the state the first had there.
   MaterialPoint whole = point_at(0.66, Form::coupled), first = point_at(0.66, Form::coupled);
@@ -196,6 +213,30 @@ TEST(Point, FailureIsAStatusAndLeavesTheStateAlone) {
     EXPECT_EQ(point.state().nu, before.nu);
     EXPECT_EQ(point.state().sigma_dev, before.sigma_dev);
     EXPECT_FALSE(point.walk(0, 0.01).failed());  // and the point can go on
+  }
+}
+
+TEST(Point, FailureOnTheWayGoesBackToTheStart) {
+  ParameterSet set = thesis();
+  set.shear->beta_F->Q_max.value = 1e308;  // the rate of F_dev overflows as soon as there is contact
+  MaterialPoint point = point_at(0.66, Form::coupled, set);
+  const Status status = point.walk(0.1, 0.1);
+  EXPECT_TRUE(status.failed());
+  EXPECT_THAT(status.message, HasSubstr("CVODE"));
+  EXPECT_EQ(point.state().nu, 0.66);
+  EXPECT_FALSE(point.state().jammed);
+  EXPECT_TRUE(point.events().empty());
+  ASSERT_FALSE(point.walk(-0.1, 0).failed());
+}
+
+TEST(Point, AStretchMayBeCutAnywhere) {
+  for (const Form form : forms) {
+    MaterialPoint whole = point_at(0.68, form), pieces = point_at(0.68, form);
+    ASSERT_FALSE(whole.walk(0.1, 0.1).failed());
+    for (int i = 0; i < 7; ++i) ASSERT_FALSE(pieces.walk(0.1 / 7, 0.1 / 7).failed());
+    EXPECT_NEAR(whole.state().P, pieces.state().P, 1e-10) << name_of(form);
+    EXPECT_NEAR(whole.state().sigma_dev, pieces.state().sigma_dev, 1e-10) << name_of(form);
+    EXPECT_NEAR(whole.state().F_dev, pieces.state().F_dev, 1e-10) << name_of(form);
   }
 }
 
