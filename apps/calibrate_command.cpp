@@ -84,9 +84,9 @@ class Calibration {
   int run() {
     const calibrate::CampaignResult simulated = simulate();
     if (simulated.stopped || interrupt_.stop()) {
-      talk_.warn(fmt::format("stopped; {} finished tests are kept; go on with: {}",
-                             simulated.reused + simulated.finished,
-                             resume_command(arguments_, folder_.dir())));
+      talk_.complain(fmt::format("stopped; {} finished tests are kept; go on with: {}",
+                                 simulated.reused + simulated.finished,
+                                 resume_command(arguments_, folder_.dir())));
       return interrupted;
     }
     interrupt_.end_at_once("stopped; all finished tests are kept; go on with: " +
@@ -97,9 +97,9 @@ class Calibration {
     talk_.say(fmt::format("report: {} ({} in all)", (folder_.dir() / "report.html").string(),
                           time_text(times_.total_s())));
     if (simulated.failed.empty()) return all_well;
-    talk_.warn(fmt::format("{} of the tests failed, see {}; try them again with: {}", simulated.failed.size(),
-                           (folder_.dir() / "failures.json").string(),
-                           resume_command(arguments_, folder_.dir())));
+    talk_.complain(fmt::format("{} of the tests failed, see {}; try them again with: {}",
+                               simulated.failed.size(), (folder_.dir() / "failures.json").string(),
+                               resume_command(arguments_, folder_.dir())));
     return failed;
   }
 
@@ -121,7 +121,7 @@ class Calibration {
     calibrate::FitOutput fitted;
     terminal_.draw("fitting");
     times_.measure("fit", [&] {
-      fitted = calibrate::fit_records(folder_.dir());
+      fitted = calibrate::fit_records(folder_.dir(), find_thesis(campaign_.material.w));
       write_file(folder_.dir() / "parameters.json", fitted.parameters.to_json().dump(2) + "\n");
       write_file(folder_.dir() / "fits.json", fitted.fits.dump(2) + "\n");
     });

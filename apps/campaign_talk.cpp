@@ -47,8 +47,13 @@ void CampaignTalk::say(const std::string& line) {
   last_line_ = Clock::now();
 }
 
-void CampaignTalk::warn(const std::string& line) {
+void CampaignTalk::complain(const std::string& line) {
   terminal_.warn(line);
+  log_->error(line);
+}
+
+void CampaignTalk::remark(const std::string& line) {
+  terminal_.warn("warning: " + line);
   log_->warn(line);
 }
 
@@ -64,13 +69,14 @@ void CampaignTalk::finished(const calibrate::FinishedJob& job, const calibrate::
   const double speed = static_cast<double>(job.summary.particle_steps) / job.summary.wall_s;
   say(fmt::format("finished {} in {}, {}; {}", job.record, time_text(job.summary.wall_s), speed_text(speed),
                   standing(progress)));
-  for (const auto& warning : job.summary.warnings) warn(fmt::format("warning: {}: {}", job.record, warning));
+  for (const auto& warning : job.summary.warnings) remark(fmt::format("{}: {}", job.record, warning));
 }
 
 void CampaignTalk::failed(const calibrate::FailedJob& job) {
-  warn(fmt::format("failed: {}: {}", job.record, job.error));
+  complain(fmt::format("failed: {}: {}", job.record, job.error));
   if (!job.skipped.empty())
-    warn(fmt::format("skipped, because they start from {}: {}", job.record, fmt::join(job.skipped, ", ")));
+    complain(
+        fmt::format("skipped, because they start from {}: {}", job.record, fmt::join(job.skipped, ", ")));
 }
 
 calibrate::CampaignHooks CampaignTalk::hooks(const std::atomic<bool>& stop) {

@@ -20,12 +20,15 @@ class CampaignTalk {
   /// files tell.
   CampaignTalk(Terminal& terminal, const std::filesystem::path& dir);
 
+  /// What goes well.
   void say(const std::string& line);
-  void warn(const std::string& line);
+  /// What does not, on standard error.
+  void complain(const std::string& line);
   /// Hooks for run_campaign; the talk must outlive them.
   calibrate::CampaignHooks hooks(const std::atomic<bool>& stop);
 
  private:
+  void remark(const std::string& line);
   void show(const calibrate::CampaignProgress& progress);
   void finished(const calibrate::FinishedJob& job, const calibrate::CampaignProgress& progress);
   void failed(const calibrate::FailedJob& job);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "grainlaw/apps/commands.hpp"
+#include "grainlaw/apps/locations.hpp"
 #include "grainlaw/apps/summary.hpp"
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/calibrate/fit_records.hpp"
@@ -23,7 +24,7 @@ int run(const Arguments& arguments) {
   const fs::path output = arguments.output.empty() ? dir / "parameters.json" : fs::path(arguments.output);
   fs::path fits = arguments.fits;
   if (arguments.output.empty() && fits.empty()) fits = dir / "fits.json";
-  const calibrate::FitOutput fitted = calibrate::fit_records(dir);
+  const calibrate::FitOutput fitted = calibrate::fit_records(dir, find_thesis(size_ratio_of_records(dir)));
   write_file(output, fitted.parameters.to_json().dump(2) + "\n");
   if (!fits.empty()) write_file(fits, fitted.fits.dump(2) + "\n");
   write_stdout(parameter_table(fitted.parameters) + fit_remarks(fitted.fits) + "wrote " + output.string() +

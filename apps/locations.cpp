@@ -1,10 +1,14 @@
 #include "grainlaw/apps/locations.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <system_error>
 #include <vector>
 
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/json.hpp"
+#include "grainlaw/element/material.hpp"
 
 namespace grainlaw::apps {
 
@@ -40,6 +44,27 @@ fs::path find_data(const std::string& name) {
     if (fs::is_regular_file(folder / name, code)) return (folder / name).lexically_normal();
   throw Error((folders.front() / name).string(), "",
               "no such file, nor where the program was built or installed");
+}
+
+fs::path find_thesis(double w) {
+  constexpr double main_set_w = 3;
+  std::error_code code;
+  const fs::path main_set = find_data("thesis/parameters.json");
+  if (w == main_set_w) return main_set;
+  const std::string text = to_text(w) + (w == std::nearbyint(w) ? ".0" : "");
+  const fs::path own = main_set.parent_path() / ("w-" + text + ".json");
+  return fs::is_regular_file(own, code) ? own : main_set;
+}
+
+double size_ratio_of_records(const fs::path& dir) {
+  const fs::path records = fs::is_directory(dir / "records") ? dir / "records" : dir;
+  if (!fs::is_directory(records)) throw Error(dir.string(), "", "no such directory");
+  std::vector<fs::path> scenes;
+  for (const auto& entry : fs::directory_iterator(records))
+    if (fs::is_regular_file(entry.path() / "record.csv")) scenes.push_back(entry.path() / "scene.json");
+  if (scenes.empty()) throw Error(dir.string(), "", "holds no records");
+  const fs::path first = *std::min_element(scenes.begin(), scenes.end());
+  return Material::read(Reader(load_json(first), first.string()).object("material")).w;
 }
 
 }  // namespace grainlaw::apps

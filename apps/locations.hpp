@@ -10,4 +10,12 @@ namespace grainlaw::apps {
 /// built in, or where it was installed. Throws Error naming ./data/... if it is nowhere.
 std::filesystem::path find_data(const std::string& name);
 
+/// The thesis's parameter set to hold beside fits of a material of this w = r_max/r_min: the one for the same
+/// w (thesis/w-W.json) if there is one, else thesis/parameters.json (w = 3).
+std::filesystem::path find_thesis(double w);
+
+/// w of the records in `dir` (a campaign's output directory or a directory of records): that of the first
+/// one. Throws Error if there is none.
+double size_ratio_of_records(const std::filesystem::path& dir);
+
 }  // namespace grainlaw::apps

@@ -88,8 +88,8 @@ int run(const Arguments& arguments) {
                                  options)
                 : model::predict(parameters, followed.path, options);
   Terminal terminal;
-  echo_start(terminal, prediction);
   if (prediction.status.failed()) {
+    echo_start(terminal, prediction);
     terminal.warn(arguments.path + ": " + prediction.status.message);
     return failed;
   }
@@ -99,6 +99,7 @@ int run(const Arguments& arguments) {
     write_stdout(record.to_csv());
   else
     record.write_csv(arguments.output);
+  echo_start(terminal, prediction);
   return all_well;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -14,6 +15,8 @@ namespace grainlaw::apps {
 namespace {
 
 std::string number(double value) { return fmt::format("{:.4g}", value); }
+
+constexpr std::size_t most_remarks = 8;
 
 /// The fitted parameters with their names, in the order they are shown.
 using Rows = std::vector<std::pair<std::string, const model::Parameter*>>;
@@ -52,6 +55,18 @@ Rows fitted_rows(const model::ParameterSet& set) {
   return rows;
 }
 
+/// A list in an object; empty where there is none.
+Json list_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_array() ? *found : Json::array();
+}
+
+/// A text in an object; "-" where there is none.
+std::string text_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : "-";
+}
+
 /// A mean over seeds that leaves undefined values out.
 struct Mean {
   double sum = 0;
@@ -81,28 +96,30 @@ std::string parameter_table(const model::ParameterSet& parameters) {
 
 std::string fit_remarks(const Json& fits) {
   std::string text;
-  if (const auto checks = fits.find("checks"); checks != fits.end())
-    for (const Json& check : *checks)
-      text += fmt::format("{}: {} ({})\n", check.value("holds", false) ? "holds" : "FAILS",
-                          check.value("name", ""), check.value("value", ""));
-  if (const auto missing = fits.find("not_determined"); missing != fits.end())
-    for (const Json& one : *missing)
-      text += fmt::format("not determined: {} of {}: {}\n", one.value("parameter", ""), one.value("fit", ""),
-                          one.value("reason", ""));
+  for (const Json& check : list_of(fits, "checks")) {
+    const Json holds = check.value("holds", Json());
+    const char* verdict = holds == true ? "holds" : holds == false ? "FAILS" : "open ";
+    text += fmt::format("{}  {} ({})\n", verdict, text_of(check, "name"), text_of(check, "value"));
+  }
+  const Json missing = list_of(fits, "not_determined");
+  for (std::size_t i = 0; i < std::min(missing.size(), most_remarks); ++i)
+    text += fmt::format("not determined: {} of {}: {}\n", text_of(missing[i], "parameter"),
+                        text_of(missing[i], "fit"), text_of(missing[i], "reason"));
+  if (missing.size() > most_remarks)
+    text += fmt::format("not determined: {} more, see the report\n", missing.size() - most_remarks);
   return text;
 }
 
 std::string prediction_table(const Json& predictions) {
   std::vector<std::pair<std::string, std::string>> order;
   std::map<std::pair<std::string, std::string>, std::map<std::string_view, Mean>> errors;
-  const auto list = predictions.find("predictions");
-  if (list == predictions.end() || list->empty()) return "";
-  for (const Json& one : *list) {
-    const std::pair key{test_of(one.value("test", "")), one.value("form", "")};
+  const Json list = list_of(predictions, "predictions");
+  if (list.empty()) return "";
+  for (const Json& one : list) {
+    const std::pair key{test_of(text_of(one, "test")), text_of(one, "form")};
     if (!errors.contains(key)) order.push_back(key);
-    const auto found = one.find("errors");
-    for (const char* name : error_names)
-      errors[key][name].add(found != one.end() ? found->value(name, Json()) : Json());
+    const Json found = one.value("errors", Json::object());
+    for (const char* name : error_names) errors[key][name].add(found.value(name, Json()));
   }
   std::string text = fmt::format("{:<16} {:<14}", "prediction of", "form");
   for (const char* name : error_names) text += fmt::format(" {:>9}", name);

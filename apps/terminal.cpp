@@ -64,6 +64,7 @@ std::string speed_text(double particle_steps_per_s) {
 }
 
 std::string time_text(double seconds) {
+  if (seconds < 9.95) return fmt::format("{:.1f} s", std::max(0.0, seconds));
   const auto s = static_cast<long long>(std::llround(std::clamp(seconds, 0.0, 1e12)));
   if (s < 60) return fmt::format("{} s", s);
   if (s < 3600) return fmt::format("{} min {} s", s / 60, s % 60);

@@ -33,7 +33,7 @@ class Terminal {
 
 /// "12.3 M particle-steps/s"
 std::string speed_text(double particle_steps_per_s);
-/// "8 s", "3 min 20 s", "2 h 5 min"
+/// "8.1 s", "45 s", "3 min 20 s", "2 h 5 min"
 std::string time_text(double seconds);
 /// "[#####.....]" of so many characters.
 std::string bar_text(double fraction, std::size_t width);
