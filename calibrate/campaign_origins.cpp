@@ -30,7 +30,8 @@ class Passage {
   double begin(std::size_t segment) const { return ends_[segment][0]; }
   double end(std::size_t segment) const { return ends_[segment][1]; }
   bool passes(std::size_t segment, double nu) const {
-    const auto [low, high] = std::minmax({begin(segment), end(segment)});  // by value: the ends are temporaries
+    const auto [low, high] =
+        std::minmax({begin(segment), end(segment)});  // by value: the ends are temporaries
     return nu >= low - same_nu && nu <= high + same_nu;
   }
   /// The last segment that passes nu; the first one if none does.

@@ -77,10 +77,10 @@ struct Run {
   std::string exit;
 };
 
-/// None where the law is not finite at the start.
-std::optional<Run> descend(const FitProblem& problem, const std::vector<std::size_t>& free,
-                           const std::vector<double>& weights, double unit,
-                           const std::vector<double>& start) {
+/// One run of the solver. None where the law is not finite at the start.
+std::optional<Run> descend_within(const FitProblem& problem, const std::vector<std::size_t>& free,
+                                  const std::vector<double>& weights, double unit,
+                                  const std::vector<double>& start) {
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem ceres_problem(ownership);
@@ -115,6 +115,61 @@ std::optional<Run> descend(const FitProblem& problem, const std::vector<std::siz
   for (std::size_t k = 0; k < free.size(); ++k) {
     const FitParameter& p = problem.parameters[free[k]];
     run.values[free[k]] = std::clamp(u[k] * p.scale, p.low, p.high);
+  }
+  return run;
+}
+
+bool at_low(const FitParameter& p, double value) { return value <= p.low + 1e-9 * (p.high - p.low); }
+bool at_high(const FitParameter& p, double value) { return value >= p.high - 1e-9 * (p.high - p.low); }
+
+/// Whether the sum of squares falls when parameter i leaves its bound.
+bool pulls_inwards(const FitProblem& problem, const std::vector<double>& weights,
+                   const std::vector<double>& values, std::size_t i) {
+  std::vector<double> gradient(values.size());
+  double slope = 0;
+  std::size_t row = 0;
+  for (const FitSeries& series : problem.series) {
+    for (const FitPoint& point : series.points) {
+      const double residual = problem.law(values, point, gradient) - point.y;
+      slope += weights[row] * weights[row] * residual * gradient[i];
+      ++row;
+    }
+  }
+  return at_low(problem.parameters[i], values[i]) ? slope < 0 : slope > 0;
+}
+
+/// The solver projects its steps onto the bounds, and a step cut short there can end it before the other
+/// parameters are at their minimum. So those that came to rest on a bound are put exactly there, the others
+/// go on, and one that would rather leave its bound is let go.
+std::optional<Run> descend(const FitProblem& problem, const std::vector<std::size_t>& free,
+                           const std::vector<double>& weights, double unit,
+                           const std::vector<double>& start) {
+  std::optional<Run> run = descend_within(problem, free, weights, unit, start);
+  for (int round = 0; run && round < 4; ++round) {
+    std::vector<std::size_t> inner, resting;
+    std::vector<double> from = run->values;
+    for (const std::size_t i : free) {
+      const FitParameter& p = problem.parameters[i];
+      const bool low = at_low(p, from[i]), high = at_high(p, from[i]);
+      (low || high ? resting : inner).push_back(i);
+      if (low || high) from[i] = low ? p.low : p.high;
+    }
+    if (resting.empty()) return run;
+    if (!inner.empty()) {
+      auto rest = descend_within(problem, inner, weights, unit, from);
+      if (!rest || rest->cost > run->cost * (1 + 1e-9)) return run;
+      run = std::move(rest);
+    }
+    std::vector<double> nudged = run->values;
+    for (const std::size_t i : resting) {
+      if (!pulls_inwards(problem, weights, run->values, i)) continue;
+      const FitParameter& p = problem.parameters[i];
+      nudged[i] += (at_low(p, nudged[i]) ? 1e-3 : -1e-3) * (p.high - p.low);
+    }
+    if (nudged == run->values) return run;
+    auto again = descend_within(problem, free, weights, unit, nudged);
+    if (!again || again->cost >= run->cost) return run;
+    run = std::move(again);
   }
   return run;
 }

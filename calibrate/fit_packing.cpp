@@ -131,17 +131,32 @@ FitProblem pressure_problem(const std::vector<PackingSeries>& series, Points poi
   return problem;
 }
 
+std::vector<PackingSeries> near_jamming(const std::vector<PackingSeries>& series) {
+  const double highest = lowest_nu(series) * (1 + free_C0_range);
+  std::vector<PackingSeries> near = series;
+  for (PackingSeries& s : near)
+    std::erase_if(s.states, [&](const PackingState& state) { return state.nu > highest; });
+  return near;
+}
+
 PackingFit fit_packing(const std::vector<PackingSeries>& series, Points points, const KnownValues& known) {
   PackingFit out;
   out.contacts_law = contacts_problem(series, points, known);
   out.contacts = fit(out.contacts_law);
   KnownValues known_free = known;
   known_free.emplace("C0", 6);
-  out.contacts_free_C0_law = contacts_problem(series, points, known_free, true);
+  out.contacts_free_C0_law = contacts_problem(near_jamming(series), points, known_free, true);
   out.contacts_free_C0 = fit(out.contacts_free_C0_law);
   const FitEstimate& nu_c = out.contacts["nu_c_contacts"];
-  out.rattlers_law = rattlers_problem(series, points, known, nu_c.value, nu_c.stderr_.value_or(0));
-  out.rattlers = fit(out.rattlers_law);
+  if (std::isfinite(nu_c.value)) {
+    out.rattlers_law = rattlers_problem(series, points, known, nu_c.value, nu_c.stderr_.value_or(0));
+    out.rattlers = fit(out.rattlers_law);
+  } else {
+    out.rattlers_law = rattlers_problem(series, points, known, lowest_nu(series), 0);
+    out.rattlers =
+        not_fitted(out.rattlers_law, "nu_c_contacts is not determined, and this law counts from it");
+    out.rattlers.parameters.back().value = nu_c.value;
+  }
   out.pressure_law = pressure_problem(series, points, known);
   out.pressure = fit(out.pressure_law);
   return out;

@@ -46,6 +46,12 @@ FitProblem rattlers_problem(const std::vector<PackingSeries>& series, Points poi
 FitProblem pressure_problem(const std::vector<PackingSeries>& series, Points points,
                             const KnownValues& known);
 
+/// C0 is a limit, and Eq. 2.11 its approach: over a wider range of volume fractions a single exponent does
+/// not hold, and a free C0 would take up the difference. So the fit with C0 free takes states up to this nu
+/// over the lowest one, less one.
+inline constexpr double free_C0_range = 0.12;
+std::vector<PackingSeries> near_jamming(const std::vector<PackingSeries>& series);
+
 /// A row of Table 2.1.
 struct PackingFit {
   FitResult contacts, contacts_free_C0, rattlers, pressure;

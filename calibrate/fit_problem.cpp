@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "grainlaw/calibrate/fit_assess.hpp"
 #include "grainlaw/element/error.hpp"
@@ -74,25 +75,6 @@ std::optional<std::size_t> next_to_hold(const FitProblem& problem,
   return best;
 }
 
-/// Nothing was fitted: every free parameter keeps its fallback, or else its start.
-FitResult nothing_fitted(const FitProblem& problem, const std::string& why) {
-  FitResult result;
-  result.n = count_points(problem);
-  result.exit = "not run: " + why;
-  result.stderr_from = "none";
-  for (const FitParameter& p : problem.parameters) {
-    FitEstimate e;
-    e.name = p.name;
-    e.unit = p.unit;
-    e.value = p.held ? p.initial : p.fallback.value_or(p.initial);
-    e.held = true;
-    e.determined = p.held;
-    if (!p.held) e.reason = why;
-    result.parameters.push_back(e);
-  }
-  return result;
-}
-
 }  // namespace
 
 const FitEstimate& FitResult::operator[](const std::string& name) const {
@@ -112,6 +94,24 @@ bool FitResult::determined() const {
   return std::all_of(parameters.begin(), parameters.end(), [](const FitEstimate& p) { return p.determined; });
 }
 
+FitResult not_fitted(const FitProblem& problem, const std::string& why) {
+  FitResult result;
+  result.n = count_points(problem);
+  result.exit = "not run: " + why;
+  result.stderr_from = "none";
+  for (const FitParameter& p : problem.parameters) {
+    FitEstimate e;
+    e.name = p.name;
+    e.unit = p.unit;
+    e.value = p.held ? p.initial : p.fallback.value_or(std::numeric_limits<double>::quiet_NaN());
+    e.held = true;
+    e.determined = p.held;
+    if (!p.held) e.reason = why;
+    result.parameters.push_back(e);
+  }
+  return result;
+}
+
 FitResult fit(const FitProblem& problem) {
   check(problem);
   FitProblem now = problem;
@@ -128,7 +128,7 @@ FitResult fit(const FitProblem& problem) {
     if (const std::string why = too_few(now, free.size()); !why.empty()) {
       const auto next = next_to_hold(now, free);
       if (count_points(now) == 0 || !next) {
-        result = nothing_fitted(now, why);
+        result = not_fitted(now, why);
         break;
       }
       hold(*next, why);

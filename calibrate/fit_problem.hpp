@@ -70,7 +70,7 @@ struct FitProblem {
 
 struct FitEstimate {
   std::string name, unit;
-  double value = 0;
+  double value = 0;                                     ///< NaN: nobody knows it
   std::optional<double> stderr_;                        ///< none where held without error, or unknown
   std::optional<std::pair<double, double>> interval95;  ///< Student's t with the fit's degrees of freedom
   bool at_bound = false;
@@ -104,5 +104,9 @@ struct FitResult {
 /// for a problem that makes no sense (no parameters, a bound that excludes its initial value, points that are
 /// not finite).
 FitResult fit(const FitProblem& problem);
+
+/// The result of a fit that cannot even be tried: every free parameter is at its fallback, or unknown (NaN),
+/// for this reason.
+FitResult not_fitted(const FitProblem& problem, const std::string& why);
 
 }  // namespace grainlaw::calibrate

@@ -49,9 +49,10 @@ void hold_if_open(FitParameter& p, const KnownValues& known, int order) {
   p.hold_order = order;
 }
 
-std::vector<FitSeries> series_of(const std::vector<RunValue>& values) {
+std::vector<FitSeries> series_of(const std::vector<RunValue>& values, bool weighted) {
   std::vector<FitSeries> series;
-  for (const RunValue& v : values) series.push_back({v.test, v.group, {{v.nu, v.value, 0, v.error}}});
+  for (const RunValue& v : values)
+    series.push_back({v.test, v.group, {{v.nu, v.value, 0, weighted ? v.error : 0}}});
   return series;
 }
 
@@ -83,7 +84,7 @@ FitProblem approach_problem(const ShearCurve& curve) {
   problem.series = {series};
   problem.starts = 8;
   problem.parameters = {parameter("max", 0.15, 0, 1, 0.1), parameter("initial", 0, -0.5, 0.5, 0.1),
-                        parameter("beta", 40, 1, 2000, 40)};
+                        parameter("beta", 40, 1, 2000, 100)};
   return problem;
 }
 
@@ -94,7 +95,8 @@ FitProblem density_problem(ShearQuantity quantity, const std::vector<RunValue>& 
   const double unit = is_rate(quantity) ? 50 : 0.15;
   FitProblem problem;
   problem.law = differentiable<4>(DensityLaw{});
-  problem.series = series_of(values);
+  // The error of a rate grows with the rate itself: as a weight it would pull the law towards the lower ones.
+  problem.series = series_of(values, !is_rate(quantity));
   problem.points = Points::runs;
   problem.x_resolution = nu_resolution;
   problem.starts = 24;
@@ -116,7 +118,7 @@ FitProblem density_problem(ShearQuantity quantity, const std::vector<RunValue>& 
 Trend trend_of(const std::vector<RunValue>& values) {
   FitProblem problem;
   problem.law = differentiable<2>(StraightLine{});
-  problem.series = series_of(values);
+  problem.series = series_of(values, true);
   problem.points = Points::runs;
   problem.x_resolution = nu_resolution;
   problem.parameters = {parameter("value", 0, -1e4, 1e4, 1e4), parameter("slope", 0, -1e5, 1e5, 1e5)};

@@ -1,8 +1,9 @@
 #include "grainlaw/calibrate/predict_records.hpp"
 
-#include <array>
 #include <cmath>
-#include <optional>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include "grainlaw/calibrate/fit_input.hpp"
 #include "grainlaw/element/error.hpp"
@@ -10,81 +11,91 @@
 #include "grainlaw/model/predict.hpp"
 
 namespace grainlaw::calibrate {
-
 namespace {
 
-constexpr std::array<const char*, 4> compared{"P", "sigma_dev", "s_dev", "F_dev"};
+namespace fs = std::filesystem;
 
-std::string status_of(const model::Status& status) {
-  std::string text = name_of(status.code);
-  if (!status.message.empty()) text += ": " + status.message;
-  return text;
-}
+constexpr model::Form forms[] = {model::Form::reduced_closed, model::Form::reduced, model::Form::coupled};
+/// What a prediction and a record have in common and the law claims to know.
+const std::vector<std::string> compared{"P", "sigma_dev", "s_dev", "F_v", "F_dev", "C", "C_star", "f_NR"};
 
 Json errors_of(const Record& predicted, const Record& measured) {
   Json errors = Json::object();
-  for (const char* column : compared) {
-    std::vector<double> y = measured[column];
-    y.resize(predicted.rows());  // a failed integration has fewer rows
-    errors[column] = relative_error(predicted[column], y);
+  for (const std::string& column : compared) {
+    errors[column] = nullptr;
+    if (!predicted.has(column) || !measured.has(column)) continue;
+    const double distance = relative_distance(predicted[column], measured[column]);
+    if (std::isfinite(distance)) errors[column] = distance;
   }
   return errors;
 }
 
-/// One test in one form; fills the entry, and writes the prediction beside the record.
-Json predict_one(const std::filesystem::path& dir, const TestRecord& test, model::Form form,
-                 const model::ParameterSet& parameters) {
-  const std::string file = "predictions/" + test.name + "." + name_of(form) + ".csv";
-  Json entry{{"test", test.name}, {"mode", test.mode}, {"seed", test.seed}, {"form", name_of(form)}};
+/// Path of the test, to be started where the record starts. Nothing else of the record is used.
+Path path_of(const TestRecord& test) {
   Path path = test.path;
-  path.start = {};
+  path.start = Start{};
   path.start.nu = test.nu_start;
-  model::PredictOptions options;
-  options.form = form;
-  std::optional<model::Prediction> prediction;
+  return path;
+}
+
+/// "ok", or "unjammed: carries no stress at the end: ..."
+std::string in_words(const model::Status& status) {
+  return model::name_of(status.code) + (status.message.empty() ? "" : ": " + status.message);
+}
+
+Json predict_one(const TestRecord& test, model::Form form, const model::ParameterSet& parameters,
+                 const fs::path& dir) {
+  Json json{{"test", test.name}, {"mode", test.mode}, {"seed", nullptr}, {"form", model::name_of(form)}};
+  if (test.seed.find_first_not_of("0123456789") == std::string::npos) json["seed"] = std::stoll(test.seed);
+  model::Prediction prediction;
   try {
-    const auto samples = model::samples_of(test.rows, path, test.nu_start);
-    prediction = model::predict(parameters, path, samples, options);
-  } catch (const Error& refusal) {
-    entry["status"] = std::string("refused: ") + refusal.what();
+    const Path path = path_of(test);
+    model::PredictOptions options;
+    options.form = form;
+    prediction = model::predict(parameters, path, model::samples_of(test.rows, path, test.nu_start), options);
+    json["status"] = in_words(prediction.status);
+  } catch (const Error& error) {
+    // A path that the law cannot take, or a group that the set lacks, is a finding about this form, not the
+    // end.
+    json["status"] = std::string("refused: ") + error.what();
   }
-  if (prediction) {
-    entry["status"] = status_of(prediction->status);
-    entry["start"] = prediction->start;
-    entry["warnings"] = prediction->warnings;
-    entry["errors"] = errors_of(prediction->record, test.rows);
-    prediction->record.write_csv(dir / file);
-    entry["file"] = file;
-  }
-  entry["record"] = std::filesystem::relative(test.dir / "record.csv", dir).generic_string();
-  return entry;
+  const bool walked = prediction.record.rows() > 0;
+  json["start"] = walked ? prediction.start : Json();
+  json["errors"] = errors_of(prediction.record, test.rows);
+  json["warnings"] = prediction.warnings;
+  json["file"] = nullptr;
+  json["record"] = fs::relative(test.dir / "record.csv", dir).generic_string();
+  if (!walked) return json;
+  const fs::path file = fs::path("predictions") / (test.name + "." + model::name_of(form) + ".csv");
+  prediction.record.write_csv(dir / file);
+  json["file"] = file.generic_string();
+  return json;
 }
 
 }  // namespace
 
-Json relative_error(const std::vector<double>& predicted, const std::vector<double>& measured) {
+double relative_distance(const std::vector<double>& predicted, const std::vector<double>& measured) {
   double difference = 0, size = 0;
-  for (std::size_t i = 0; i < predicted.size(); ++i) {
-    if (std::isnan(predicted[i]) || std::isnan(measured[i])) continue;
-    difference += std::pow(predicted[i] - measured[i], 2);
-    size += std::pow(measured[i], 2);
+  for (std::size_t i = 0; i < std::min(predicted.size(), measured.size()); ++i) {
+    if (!std::isfinite(predicted[i]) || !std::isfinite(measured[i])) continue;
+    difference += (predicted[i] - measured[i]) * (predicted[i] - measured[i]);
+    size += measured[i] * measured[i];
   }
-  return size > 0 ? Json(std::sqrt(difference / size)) : Json();
+  return size > 0 ? std::sqrt(difference / size) : std::numeric_limits<double>::quiet_NaN();
 }
 
-Json predict_records(const std::filesystem::path& dir, const model::ParameterSet& parameters) {
+Json predict_records(const fs::path& dir, const model::ParameterSet& parameters) {
   const RecordFolder folder = read_records(dir);
-  std::filesystem::remove_all(dir / "predictions");
-  std::filesystem::create_directories(dir / "predictions");
-  Json list = Json::array();
+  Json predictions = Json::array();
+  if (folder.campaign) fs::remove_all(dir / "predictions");  // of an earlier parameter set
+  fs::create_directories(dir / "predictions");
   for (const TestRecord& test : folder.tests) {
     if (test.role != Role::predict) continue;
-    for (const model::Form form : {model::Form::reduced_closed, model::Form::reduced, model::Form::coupled})
-      list.push_back(predict_one(dir, test, form, parameters));
+    for (const model::Form form : forms) predictions.push_back(predict_one(test, form, parameters, dir));
   }
-  Json all{{"predictions", list}};
-  write_file(dir / "predictions.json", all.dump(2) + "\n");
-  return all;
+  Json out{{"predictions", predictions}};
+  write_file(dir / "predictions.json", out.dump(2) + "\n");
+  return out;
 }
 
 }  // namespace grainlaw::calibrate

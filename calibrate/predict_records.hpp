@@ -1,25 +1,24 @@
-// The law against tests it never saw: each record of role predict, in every form of the law, row by row.
+// Predictions of the tests that no fit has read, beside their records: how good is the law?
+// The law follows the path that the test ran, from the volume fraction it started at, in every form.
 #pragma once
 
 #include <filesystem>
 #include <vector>
 
 #include "grainlaw/element/json.hpp"
-#include "grainlaw/element/record.hpp"
 #include "grainlaw/model/parameters.hpp"
 
 namespace grainlaw::calibrate {
 
-/// Relative L2 error of a predicted column over the rows of a test, sqrt(sum (x - y)^2 / sum y^2), y being
-/// the record. Rows where either is undefined do not count; null where none is left or the record is zero
-/// throughout.
-Json relative_error(const std::vector<double>& predicted, const std::vector<double>& measured);
-
-/// Predicts every record of role predict in `dir` (a campaign's output directory) along the path it ran, from
-/// its volume fraction and the parameter set alone: no stress, no fabric and no fit of these records is used.
-/// Writes predictions/TEST-sSEED.FORM.csv, with the rows of the record, and predictions.json, which is
-/// returned. A path that the law refuses and an integration that fails are told in the entry's status; the
-/// others go on.
+/// For each record of role predict in `dir` (see read_records) and each form of the law: writes
+/// predictions/TEST-sSEED.FORM.csv, with one row per row of the record, and at the end predictions.json,
+/// which is also returned (docs/fits.md lists its keys). The start is the record's volume fraction; every
+/// other start value comes from `parameters`. A form that the set or the path does not allow is listed with
+/// status "refused" and the reason. Throws Error for records that cannot be read.
 Json predict_records(const std::filesystem::path& dir, const model::ParameterSet& parameters);
+
+/// Relative L2 distance over the rows where both are defined: sqrt(sum (a - b)^2 / sum b^2), b the measured
+/// one. NaN where there is no such row or b vanishes.
+double relative_distance(const std::vector<double>& predicted, const std::vector<double>& measured);
 
 }  // namespace grainlaw::calibrate

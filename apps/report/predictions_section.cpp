@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <cmath>
+
+#include "grainlaw/apps/report/figure.hpp"
+#include "grainlaw/apps/report/numbers.hpp"
+#include "grainlaw/apps/report/sections.hpp"
+#include "grainlaw/apps/report/symbols.hpp"
+
+namespace grainlaw::report {
+namespace {
+
+constexpr std::size_t dots_per_run = 160, points_per_line = 400;
+
+/// All predictions of one test: every seed, every form.
+struct TestPredictions {
+  std::string test, mode;
+  std::vector<const PredictedRun*> runs;
+};
+
+std::vector<TestPredictions> by_test(const Inputs& inputs) {
+  std::vector<TestPredictions> tests;
+  for (const PredictedRun& run : inputs.predicted) {
+    auto found = std::find_if(tests.begin(), tests.end(), [&](const auto& t) { return t.test == run.test; });
+    if (found == tests.end()) found = tests.insert(tests.end(), {run.test, text_in(run.entry, "mode"), {}});
+    found->runs.push_back(&run);
+  }
+  return tests;
+}
+
+/// Runs of the DEM that the predictions of a test belong to, each once.
+std::vector<const Run*> measured_runs(const Inputs& inputs, const TestPredictions& test) {
+  std::vector<const Run*> runs;
+  for (const PredictedRun* predicted : test.runs) {
+    const Run* run = inputs.run(text_in(predicted->entry, "test"));
+    if (run && run->record && std::find(runs.begin(), runs.end(), run) == runs.end()) runs.push_back(run);
+  }
+  return runs;
+}
+
+std::vector<std::string> forms_of(const TestPredictions& test) {
+  std::vector<std::string> forms;
+  for (const PredictedRun* run : test.runs) {
+    if (std::find(forms.begin(), forms.end(), run->form) == forms.end()) forms.push_back(run->form);
+  }
+  return forms;
+}
+
+Draw draw_of(const std::string& form) {
+  if (form == "reduced_closed") return Draw::dotted;
+  return form == "reduced" ? Draw::dashes : Draw::line;
+}
+
+double span(const Record& record, const std::string& column) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double x : record[column]) {
+    if (!std::isfinite(x)) continue;
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  return high - low;
+}
+
+/// Shear strain where the test shears, else volume fraction.
+std::string abscissa(const TestPredictions& test, const std::vector<const Run*>& measured) {
+  const Record* record = !measured.empty() ? &*measured[0]->record : nullptr;
+  if (!record && test.runs[0]->record) record = &*test.runs[0]->record;
+  return record && span(*record, "eps_dev") < 1e-3 ? "nu" : "eps_dev";
+}
+
+Series series_of(const Record& record, const std::string& x, const std::string& y, std::size_t most) {
+  Series series;
+  if (!record.has(y)) return series;
+  series.x = thinned(record[x], most);
+  series.y = thinned(record[y], most);
+  return series;
+}
+
+Panel quantity_panel(const Inputs& inputs, const TestPredictions& test,
+                     const std::vector<const Run*>& measured, const std::string& quantity, Area area) {
+  const std::string x = abscissa(test, measured);
+  Panel panel{area, "", axis_label(x, ""), axis_label(quantity, ""), {}, {}, {}};
+  for (const Run* run : measured) {
+    Series dots = series_of(*run->record, x, quantity, dots_per_run);
+    dots.draw = Draw::dots;
+    dots.colour = measured_colour;
+    dots.label = "DEM";
+    panel.series.push_back(std::move(dots));
+  }
+  for (const PredictedRun* run : test.runs) {
+    if (!run->record) continue;
+    Series line = series_of(*run->record, x, quantity, points_per_line);
+    line.draw = draw_of(run->form);
+    line.colour = form_colour(run->form);
+    line.label = form_name(run->form);
+    panel.series.push_back(std::move(line));
+  }
+  const auto unit = inputs.stress_unit_kPa();
+  if (unit && (quantity == "P" || quantity == "sigma_dev")) {
+    panel.right_unit = *unit;
+    panel.right_label =
+        (quantity == "P" ? std::string("{/:Italic P}") : std::string("{/:Italic σ}_{dev}")) + " (kPa)";
+  }
+  return panel;
+}
+
+/// "3.4 % (2.9, 3.9)": the mean over seeds, and each.
+std::string error_cell(const TestPredictions& test, const std::string& form, const std::string& quantity) {
+  std::vector<double> errors;
+  for (const PredictedRun* run : test.runs) {
+    const auto error = number_in(value_in(run->entry, "errors"), quantity);
+    if (run->form == form && error) errors.push_back(*error);
+  }
+  if (errors.empty()) return nothing;
+  double sum = 0;
+  for (const double error : errors) sum += error;
+  std::string cell = percent(sum / static_cast<double>(errors.size()));
+  if (errors.size() == 1 || errors.size() > 5) return cell;
+  cell += " (";
+  for (std::size_t i = 0; i < errors.size(); ++i) cell += (i == 0 ? "" : ", ") + number(100 * errors[i], 2);
+  return cell + ")";
+}
+
+Markup status_cell(const TestPredictions& test, const std::string& form) {
+  std::vector<std::string> bad;
+  for (const PredictedRun* run : test.runs) {
+    const std::string status = text_in(run->entry, "status");
+    const bool new_words = std::find(bad.begin(), bad.end(), status) == bad.end();
+    if (run->form == form && status != "ok" && !status.empty() && new_words) bad.push_back(status);
+  }
+  if (bad.empty()) return "to the end"_html;
+  std::vector<Markup> words;
+  for (const std::string& status : bad) words.push_back(text(status));
+  return element("span", join(words, "; "_html), {{"class", "bad"}});
+}
+
+Markup error_table(const TestPredictions& test) {
+  const std::vector<std::string> quantities{"P", "sigma_dev", "s_dev", "F_dev"};
+  Table table;
+  table.column("Relative error along the path"_html);
+  for (const std::string& quantity : quantities) table.column(symbol(quantity), Table::Kind::figures);
+  table.column("Integrated"_html);
+  for (const std::string& form : forms_of(test)) {
+    std::vector<Markup> cells{text(form_name(form))};
+    for (const std::string& quantity : quantities) cells.push_back(text(error_cell(test, form, quantity)));
+    cells.push_back(status_cell(test, form));
+    table.row(cells);
+  }
+  return table.html("small");
+}
+
+std::string plain_value(const Json& value) {
+  if (value.is_number()) return number(value.get<double>(), 5);
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_object()) return nothing;
+  const std::string from = text_in(value, "from").empty() ? text_in(value, "source") : text_in(value, "from");
+  const std::string shown = number(number_in(value, "value"), 5);
+  return from.empty() ? shown : shown + " (" + from + ")";
+}
+
+/// Where the first prediction of a test started from, as it echoed it.
+Markup start_sentence(const TestPredictions& test) {
+  const Json& start = value_in(test.runs[0]->entry, "start");
+  if (!start.is_object() || start.empty()) return {};
+  std::vector<Markup> pieces;
+  for (const auto& [name, value] : start.items()) {
+    if (!value.is_null()) pieces.push_back(symbol(name) + " = "_html + text(plain_value(value)));
+  }
+  return " Start of the first: "_html + join(pieces, ", "_html) + "."_html;
+}
+
+Markup test_figure(const Inputs& inputs, const TestPredictions& test, std::size_t n) {
+  const auto measured = measured_runs(inputs, test);
+  Figure figure;
+  figure.name = "prediction-" + std::to_string(n);
+  figure.alt =
+      "DEM and predictions of " + test.test + ": pressure, shear stress, stress ratio, contact anisotropy";
+  figure.smallest_width = "640px";
+  const std::vector<std::string> quantities{"P", "sigma_dev", "s_dev", "F_dev"};
+  const auto areas = grid(figure, quantities.size(), 2, 210, 64);
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    figure.panels.push_back(quantity_panel(inputs, test, measured, quantities[i], areas[i]));
+  }
+  const std::string seeds = std::to_string(measured.size()) + (measured.size() == 1 ? " seed." : " seeds.");
+  figure.caption = element("b", text(test.test)) + text(" (" + mode_name(test.mode) + "), " + seeds) +
+                   start_sentence(test);
+  return "<h3>"_html + text(mode_name(test.mode) + ": " + test.test) + "</h3>\n"_html + draw(figure) +
+         error_table(test);
+}
+
+}  // namespace
+
+Markup predictions_section(const Inputs& inputs) {
+  const auto tests = by_test(inputs);
+  if (tests.empty()) return absent("No predictions: predictions.json is not there, or holds none.");
+  Markup section =
+      "<p>The law, with the fitted parameters, follows the strain path of tests that no fit has read. Dots "
+      "are the DEM's, all "
+      "seeds; lines are the law in its three forms: the reduced law with the current ν in Eqs. 2.17 and 2.18 "
+      "(closed form), "
+      "the same as rate equations (rate form), and the coupled law of Eq. 4.16, in which stress and fabric "
+      "act on each other. "
+      "In the tables: mean over seeds, each seed in brackets.</p>\n"_html;
+  std::size_t n = 0;
+  for (const TestPredictions& test : tests) section += test_figure(inputs, test, ++n);
+  return section;
+}
+
+}  // namespace grainlaw::report

@@ -1,0 +1,231 @@
+#include "grainlaw/calibrate/fit_account.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace grainlaw::calibrate {
+namespace {
+
+constexpr const char* nu_label = "volume fraction ν";
+constexpr double thesis_nu_c = 0.6653;  // of Table 2.2, where no isotropic test tells
+
+/// The states of one mode and role, pooled over tests and seeds.
+struct Pool {
+  std::vector<PackingSeries> series;
+  std::size_t left_out = 0;
+};
+
+bool is_shear(const std::string& mode) { return mode == "d2" || mode == "d3"; }
+
+Pool pool_of(const RecordFolder& folder, const std::string& mode, Role role, const Selection& selection,
+             std::vector<LeftOut>* left_out) {
+  Pool pool;
+  for (const TestRecord& test : folder.tests) {
+    if (test.mode != mode || test.role != role) continue;
+    Counted counted;
+    PackingSeries series =
+        is_shear(mode) ? steady_state(test, selection, counted) : unloading_branch(test, selection, counted);
+    if (!counted.reason.empty()) {
+      if (left_out != nullptr) left_out->push_back({test.name, role, "packing laws: " + counted.reason});
+      continue;
+    }
+    pool.left_out += counted.left_out;
+    pool.series.push_back(std::move(series));
+  }
+  return pool;
+}
+
+/// C over nu by the fitted contact and rattler laws: what the pressure law needs for its curve.
+std::function<double(double)> coordination_of(const PackingFit& fit) {
+  if (!fit.contacts.ran || !fit.rattlers.ran) return {};
+  return [contacts = fit.contacts_law.law, rattlers = fit.rattlers_law.law, c = fit.contacts.values(),
+          r = fit.rattlers.values()](double nu) {
+    const FitPoint at{nu, 0, 0, 0};
+    return (1 - rattlers(r, at, {})) * contacts(c, at, {});
+  };
+}
+
+/// How far each parameter moves when only rows of at least twice the pressure are taken.
+std::vector<double> shift_of(const FitResult& base, const FitResult& other) {
+  if (!base.ran || !other.ran) return {};
+  std::vector<double> shift;
+  for (std::size_t i = 0; i < base.parameters.size(); ++i) {
+    shift.push_back(other.parameters[i].value - base.parameters[i].value);
+  }
+  return shift;
+}
+
+/// The four entries of a mode: C*, C* with C0 free, rattlers, pressure.
+void add_packing_entries(Account& account, const std::string& mode, Role role, const Pool& pool,
+                         const PackingFit& fit, const PackingFit& narrow, const Reference& reference,
+                         const Selection& selection, const std::string& suffix) {
+  FitEntry entry;
+  entry.role = role;
+  entry.mode = mode;
+  entry.x_name = "nu";
+  entry.x_label = nu_label;
+  entry.selection = is_shear(mode) ? steady_rule(selection) : unloading_rule(selection);
+  entry.rows_left_out = pool.left_out;
+  entry.thesis = reference.thesis_packing(mode);
+  const auto add = [&](const std::string& name, const std::string& law, const std::string& y,
+                       const std::string& label, const FitProblem& problem, const FitResult& result,
+                       const FitResult& other, double from) {
+    entry.name = "isotropic." + mode + "." + name + suffix;
+    entry.law = law;
+    entry.y_name = y;
+    entry.y_label = label;
+    entry.problem = problem;
+    entry.result = result;
+    entry.curve_from = from;
+    entry.shift = is_shear(mode) ? std::vector<double>{} : shift_of(result, other);
+    account.entries.push_back(entry);
+  };
+  add("C_star", "C* = C0 + C1 (ν/ν_c − 1)^α (Eq. 2.11)", "C_star", "corrected coordination number C*",
+      fit.contacts_law, fit.contacts, narrow.contacts, fit.contacts.value("nu_c_contacts"));
+  add("C_star_free_C0", "C* = C0 + C1 (ν/ν_c − 1)^α with C0 free, near jamming (Eq. 2.11)", "C_star",
+      "corrected coordination number C*", fit.contacts_free_C0_law, fit.contacts_free_C0,
+      narrow.contacts_free_C0, fit.contacts_free_C0.value("nu_c_contacts"));
+  add("phi_r", "φ_r = φ_c exp[−φ_v (ν/ν_c − 1)] (Eq. 2.12)", "phi_r", "fraction of rattlers φ_r",
+      fit.rattlers_law, fit.rattlers, narrow.rattlers, fit.rattlers.value("nu_c_contacts"));
+  entry.known_at = coordination_of(fit);
+  add("P", "p = p0 (ν C/ν_c) ε (1 − γ_p ε), ε = ln(ν/ν_c), with the measured C (Eq. 2.14)", "P",
+      "pressure P*", fit.pressure_law, fit.pressure, narrow.pressure, fit.pressure.value("nu_c"));
+}
+
+void fit_mode(Account& account, const RecordFolder& folder, const std::string& mode, Role role,
+              const Reference& reference, const Selection& selection) {
+  const bool any = std::any_of(folder.tests.begin(), folder.tests.end(), [&](const TestRecord& test) {
+    return test.mode == mode && test.role == role;
+  });
+  const bool needed = role == Role::fit && (mode == "iso" || mode == "d2");
+  if (!any && !needed) return;
+  const Pool pool = pool_of(folder, mode, role, selection, &account.left_out);
+  // A test of role predict that has nothing for these laws (UNI that only loads) is no fit at all.
+  if (pool.series.empty() && !needed) return;
+  // What the thesis says takes the place of what is open only where a prediction will use it.
+  const KnownValues fallback = role == Role::fit ? reference.packing(mode) : KnownValues{};
+  const Points points = is_shear(mode) ? Points::runs : Points::rows;
+  const PackingFit fit = fit_packing(pool.series, points, fallback);
+  Selection narrow = selection;
+  narrow.P_min *= 2;
+  const PackingFit other =
+      is_shear(mode) ? fit
+                     : fit_packing(pool_of(folder, mode, role, narrow, nullptr).series, points, fallback);
+  const bool twice = role == Role::predict && account.packing.contains(mode);
+  add_packing_entries(account, mode, role, pool, fit, other, reference, selection, twice ? ".predict" : "");
+  if (role == Role::fit) account.packing[mode] = fit;
+}
+
+FitEntry run_entry(const TestRecord& test, const std::string& quantity, const ShearCurve& curve,
+                   const Counted& counted, const Selection& selection) {
+  const bool stress = quantity == "s_dev";
+  FitEntry entry;
+  entry.name = test.name + "." + quantity;
+  entry.law = stress ? "s_dev = s_max − (s_max − s_0) exp(−β_s ε_dev) (Eq. 2.17)"
+                     : "F_dev = F_max − (F_max − F_0) exp(−β_F ε_dev) (Eq. 2.18)";
+  entry.role = test.role;
+  entry.mode = test.mode;
+  entry.x_name = "eps_dev";
+  entry.x_label = "deviatoric strain ε_dev";
+  entry.y_name = quantity;
+  entry.y_label = stress ? "deviatoric stress ratio s_dev" : "deviatoric fabric F_dev";
+  entry.selection = loading_rule(selection);
+  entry.rows_left_out = counted.left_out;
+  entry.problem = approach_problem(curve);
+  entry.result = fit(entry.problem);
+  return entry;
+}
+
+/// Fits s_dev and F_dev of one shear test; d2 tests of role fit give a point each of the laws over volume
+/// fraction.
+void fit_shear_test(Account& account, const TestRecord& test, const Selection& selection) {
+  const std::pair<const char*, std::pair<ShearQuantity, ShearQuantity>> fits[] = {
+      {"s_dev", {ShearQuantity::s_max, ShearQuantity::beta_s}},
+      {"F_dev", {ShearQuantity::F_max, ShearQuantity::beta_F}}};
+  for (const auto& [quantity, gives] : fits) {
+    Counted counted;
+    const ShearCurve curve = first_loading(test, quantity, selection, counted);
+    if (!counted.reason.empty()) {
+      account.left_out.push_back({test.name, test.role, std::string(quantity) + ": " + counted.reason});
+      continue;
+    }
+    account.entries.push_back(run_entry(test, quantity, curve, counted, selection));
+    const FitResult& r = account.entries.back().result;
+    if (test.role != Role::fit || test.mode != "d2") continue;
+    for (const auto& [parameter, target] : {std::pair("max", gives.first), std::pair("beta", gives.second)}) {
+      const FitEstimate& e = r[parameter];
+      if (e.determined && e.stderr_) {
+        account.run_values[target].push_back({test.name, test.seed, curve.nu, e.value, *e.stderr_});
+      } else {
+        account.left_out.push_back(
+            {test.name, test.role,
+             "shear." + name_of(target) + ": not determined by this test: " + e.reason});
+      }
+    }
+  }
+}
+
+void fit_density(Account& account, ShearQuantity quantity, double nu_c_error, const Reference& reference) {
+  const bool rate = quantity == ShearQuantity::beta_s || quantity == ShearQuantity::beta_F;
+  const bool stress = quantity == ShearQuantity::s_max || quantity == ShearQuantity::beta_s;
+  const std::vector<RunValue>& values = account.run_values[quantity];
+  FitEntry entry;
+  entry.name = "shear." + name_of(quantity);
+  entry.law = "Q = Q_max + Q_v exp[−α (ν/ν_c − 1)] (Eq. 2.20)";
+  entry.mode = "d2";
+  entry.x_name = "nu";
+  entry.x_label = nu_label;
+  entry.y_name = name_of(quantity);
+  entry.y_label =
+      std::string(rate ? "rate β of the " : "saturation of the ") + (stress ? "stress ratio" : "fabric");
+  entry.selection = std::string("one point per d2 test, where its own fit determines it, ") +
+                    (rate ? "all of one weight" : "weighted by its standard error");
+  entry.thesis = reference.thesis_shear(name_of(quantity));
+  entry.problem =
+      density_problem(quantity, values, account.nu_c, nu_c_error, reference.shear(name_of(quantity)));
+  entry.result = fit(entry.problem);
+  entry.curve_from = account.nu_c;
+  account.density[quantity] = entry.result;
+  account.entries.push_back(std::move(entry));
+}
+
+}  // namespace
+
+Account fit_all(const RecordFolder& folder, const Reference& reference, const Selection& selection) {
+  Account account;
+  account.left_out = folder.left_out;
+  for (const TestRecord& test : folder.tests) {
+    if (test.mode == "mixed" || test.mode == "components") {
+      account.left_out.push_back({test.name, test.role, "its path is not of one mode (iso, uni, d2, d3)"});
+    }
+  }
+  for (const Role role : {Role::fit, Role::predict}) {
+    for (const char* mode : {"iso", "uni", "d2", "d3"})
+      fit_mode(account, folder, mode, role, reference, selection);
+  }
+  const FitEstimate& nu_c = account.packing.at("iso").pressure["nu_c"];
+  account.nu_c_fitted = account.packing.at("iso").pressure.ran && !nu_c.held && nu_c.determined;
+  const KnownValues known = reference.packing("iso");
+  account.nu_c = account.nu_c_fitted ? nu_c.value : known.contains("nu_c") ? known.at("nu_c") : thesis_nu_c;
+  const double nu_c_error = account.nu_c_fitted ? nu_c.stderr_.value_or(0) : 0;
+  for (const TestRecord& test : folder.tests) {
+    if (is_shear(test.mode)) fit_shear_test(account, test, selection);
+  }
+  for (const ShearQuantity quantity : shear_quantities) fit_density(account, quantity, nu_c_error, reference);
+  return account;
+}
+
+Json Account::to_json() const {
+  Json json{{"fits", Json::array()}, {"not_determined", Json::array()}, {"left_out", Json::array()}};
+  for (const FitEntry& entry : entries) {
+    json["fits"].push_back(calibrate::to_json(entry));
+    append_not_determined(entry, json["not_determined"]);
+  }
+  for (const LeftOut& left : left_out) {
+    json["left_out"].push_back({{"test", left.name}, {"role", name_of(left.role)}, {"reason", left.reason}});
+  }
+  return json;
+}
+
+}  // namespace grainlaw::calibrate

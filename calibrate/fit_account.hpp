@@ -1,0 +1,32 @@
+// Every fit of a folder of records: rows of each mode and role, each shear test, and the laws over volume
+// fraction. Internal to fit_records.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "grainlaw/calibrate/fit_entry.hpp"
+#include "grainlaw/calibrate/fit_input.hpp"
+#include "grainlaw/calibrate/fit_parameters.hpp"
+#include "grainlaw/calibrate/fit_selection.hpp"
+
+namespace grainlaw::calibrate {
+
+struct Account {
+  std::vector<FitEntry> entries;                              ///< all fits, in the order of fits.json
+  std::vector<LeftOut> left_out;                              ///< records that a fit did not take, and why
+  std::map<std::string, PackingFit> packing;                  ///< by mode, role fit only
+  std::map<ShearQuantity, FitResult> density;                 ///< Eq. 2.20 through the d2 tests of role fit
+  std::map<ShearQuantity, std::vector<RunValue>> run_values;  ///< what it was fitted to
+  double nu_c = 0;                                            ///< of Eq. 2.20: that of the isotropic pressure
+  bool nu_c_fitted = false;
+
+  Json to_json() const;
+};
+
+/// Fits everything that the folder holds. The entries of role predict are made from records of that role
+/// alone, the others and everything else from records of role fit alone.
+Account fit_all(const RecordFolder& folder, const Reference& reference, const Selection& selection);
+
+}  // namespace grainlaw::calibrate

@@ -1,0 +1,73 @@
+#include "grainlaw/calibrate/fit_checks.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace grainlaw::calibrate {
+namespace {
+
+std::string rounded(double value, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string with_error(const FitEstimate& e, int digits) {
+  return rounded(e.value, digits) + (e.stderr_ ? " ± " + rounded(*e.stderr_, digits) : "");
+}
+
+Json check(const std::string& name, const std::string& value, bool known, bool holds) {
+  return {{"name", name},
+          {"value", known ? value : "not determined"},
+          {"holds", known ? Json(holds) : Json(nullptr)}};
+}
+
+/// None where the mode has no fit or this parameter is not fitted.
+const FitEstimate* fitted(const Account& account, const std::string& mode, FitResult PackingFit::*law,
+                          const std::string& name) {
+  const auto found = account.packing.find(mode);
+  if (found == account.packing.end() || !(found->second.*law).ran) return nullptr;
+  const FitEstimate& e = (found->second.*law)[name];
+  return e.determined && !e.held ? &e : nullptr;
+}
+
+Json jamming_order(const Account& account) {
+  const FitEstimate* iso = fitted(account, "iso", &PackingFit::pressure, "nu_c");
+  const FitEstimate* d2 = fitted(account, "d2", &PackingFit::pressure, "nu_c");
+  const bool known = iso != nullptr && d2 != nullptr;
+  return check(
+      "nu_c(ISO) > nu_c(D2)",
+      known ? with_error(*iso, 4) + (iso->value > d2->value ? " > " : " <= ") + with_error(*d2, 4) : "",
+      known, known && iso->value > d2->value);
+}
+
+Json isostatic(const Account& account) {
+  const FitEstimate* C0 = fitted(account, "iso", &PackingFit::contacts_free_C0, "C0");
+  return check("C0, left free, is 6 ± 0.2", C0 != nullptr ? with_error(*C0, 2) : "", C0 != nullptr,
+               C0 != nullptr && std::abs(C0->value - 6) <= 0.2);
+}
+
+Json pressure_slope(const Account& account) {
+  const FitEstimate* p0 = fitted(account, "iso", &PackingFit::pressure, "p0");
+  return check("p0 is within 10 % of 0.042", p0 != nullptr ? with_error(*p0, 4) : "", p0 != nullptr,
+               p0 != nullptr && std::abs(p0->value / 0.042 - 1) <= 0.1);
+}
+
+/// By a straight line through the runs, not by Eq. 2.20: the slope must be negative by two standard errors.
+Json falls(const Account& account, ShearQuantity quantity) {
+  const auto values = account.run_values.find(quantity);
+  const Trend trend = values == account.run_values.end() ? Trend{} : trend_of(values->second);
+  return check(name_of(quantity) + " falls with nu",
+               "slope of a line: " + rounded(trend.slope, 3) + " ± " + rounded(trend.error, 3), trend.known,
+               trend.slope < -2 * trend.error);
+}
+
+}  // namespace
+
+Json physics_checks(const Account& account) {
+  return Json::array({jamming_order(account), isostatic(account), falls(account, ShearQuantity::s_max),
+                      falls(account, ShearQuantity::F_max), pressure_slope(account)});
+}
+
+}  // namespace grainlaw::calibrate

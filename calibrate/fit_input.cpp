@@ -1,0 +1,130 @@
+#include "grainlaw/calibrate/fit_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/json.hpp"
+
+namespace grainlaw::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the fits read; a record may hold more.
+const std::vector<std::string> needed_columns{"segment", "eps_vol", "eps_dev", "nu",     "P",
+                                              "s_dev",   "F_dev",   "C",       "C_star", "f_NR"};
+
+std::string mode_of(const Path& path) {
+  std::set<Mode> modes;
+  for (const Segment& segment : path.segments) {
+    if (segment.mode != Mode::relax) modes.insert(segment.mode);
+  }
+  return modes.size() == 1 ? name_of(*modes.begin()) : "mixed";
+}
+
+/// Splits "d2-0.7-s1" into test and seed.
+void split_name(TestRecord& test) {
+  const auto at = test.name.rfind("-s");
+  const bool seeded = at != std::string::npos && at > 0 && at + 2 < test.name.size() &&
+                      test.name.find_first_not_of("0123456789", at + 2) == std::string::npos;
+  test.test = seeded ? test.name.substr(0, at) : test.name;
+  test.seed = seeded ? test.name.substr(at + 2) : test.name;
+}
+
+TestRecord read_record(const fs::path& dir, Role role) {
+  TestRecord test;
+  test.name = dir.filename().string();
+  test.role = role;
+  test.dir = dir;
+  split_name(test);
+  const fs::path scene = dir / "scene.json", table = dir / "record.csv";
+  Reader reader(load_json(scene), scene.string());
+  test.material = Material::read(reader.object("material"));
+  test.path = Path::read(reader.object("path"));
+  test.mode = mode_of(test.path);
+  test.rows = Record::read_csv(table, needed_columns);
+  for (const char* column : {"segment", "eps_vol", "eps_dev", "nu", "P"}) {
+    for (const double value : test.rows[column]) {
+      if (std::isnan(value))
+        throw Error(table.string(), column, "must be a number in every row, got an empty field");
+    }
+  }
+  test.nu_start = test.rows["nu"].front() * std::exp(-test.rows["eps_vol"].front());
+  test.legs = test.path.legs(test.nu_start);
+  for (const double segment : test.rows["segment"]) {
+    if (segment < 0 || segment >= static_cast<double>(test.legs.size())) {
+      throw Error(table.string(), "segment",
+                  "must be less than " + std::to_string(test.legs.size()) + ", the number of segments of " +
+                      scene.string() + ", got " + to_text(segment));
+    }
+  }
+  return test;
+}
+
+RecordFolder read_campaign(const fs::path& dir) {
+  const Campaign campaign = Campaign::load(dir / "campaign.json");
+  RecordFolder out;
+  out.name = campaign.name;
+  out.campaign = true;
+  for (const CampaignTest& test : campaign.tests) {
+    for (const auto seed : test.seeds) {
+      const std::string name = record_name(test.name, seed);
+      const fs::path record = dir / "records" / name;
+      if (!fs::exists(record / "record.csv")) {
+        out.left_out.push_back({name, test.role, "there is no record of it"});
+        continue;
+      }
+      out.tests.push_back(read_record(record, test.role));
+      out.tests.back().test = test.name;
+      out.tests.back().seed = std::to_string(seed);
+    }
+  }
+  return out;
+}
+
+RecordFolder read_folder(const fs::path& dir) {
+  RecordFolder out;
+  const fs::path absolute = fs::absolute(dir).lexically_normal();
+  out.name =
+      absolute.has_filename() ? absolute.filename().string() : absolute.parent_path().filename().string();
+  std::vector<fs::path> found;
+  for (const fs::path& place : {dir, dir / "records"}) {
+    if (!fs::is_directory(place)) continue;
+    for (const auto& entry : fs::directory_iterator(place)) {
+      const bool complete = entry.path().extension() != ".part" && fs::exists(entry.path() / "record.csv");
+      if (complete) found.push_back(entry.path());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  for (const fs::path& record : found) out.tests.push_back(read_record(record, Role::fit));
+  return out;
+}
+
+}  // namespace
+
+RecordFolder read_records(const fs::path& dir) {
+  if (!fs::is_directory(dir)) throw Error(dir.string(), "", "must be a directory with records");
+  RecordFolder out = fs::exists(dir / "campaign.json") ? read_campaign(dir) : read_folder(dir);
+  if (out.tests.empty()) {
+    throw Error(dir.string(), "", "must hold records (directories with a record.csv), found none");
+  }
+  return out;
+}
+
+std::size_t first_shear_leg(const TestRecord& test) {
+  const auto shears = [](const Leg& leg) { return leg.mode == Mode::d2 || leg.mode == Mode::d3; };
+  return static_cast<std::size_t>(std::find_if(test.legs.begin(), test.legs.end(), shears) -
+                                  test.legs.begin());
+}
+
+std::size_t last_unloading_leg(const TestRecord& test) {
+  for (std::size_t i = test.legs.size(); i > 0; --i) {
+    const Leg& leg = test.legs[i - 1];
+    if ((leg.mode == Mode::iso || leg.mode == Mode::uni) && leg.eps_vol[1] < leg.eps_vol[0]) return i - 1;
+  }
+  return test.legs.size();
+}
+
+}  // namespace grainlaw::calibrate

@@ -1,0 +1,55 @@
+// The records that fits and predictions read: every record directory of a campaign's output, or of any
+// folder. Each with its role, its mode and the path it ran.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/element/material.hpp"
+#include "grainlaw/element/path.hpp"
+#include "grainlaw/element/record.hpp"
+
+namespace grainlaw::calibrate {
+
+struct TestRecord {
+  std::string name;  ///< of its directory, "d2-0.7-s1"
+  std::string test;  ///< "d2-0.7"
+  std::string seed;  ///< "1"; the whole name where it does not end in -sNUMBER
+  Role role = Role::fit;
+  std::string mode;  ///< of all segments but relaxations: iso, uni, d2, d3; components; "mixed"
+  std::filesystem::path dir;
+  Material material;
+  Path path;
+  double nu_start = 0;  ///< where the path starts
+  std::vector<Leg> legs;
+  Record rows;
+};
+
+/// A record that should be there and is not, or one that no fit takes, and why.
+struct LeftOut {
+  std::string name;
+  Role role = Role::fit;
+  std::string reason;
+};
+
+struct RecordFolder {
+  std::string name;  ///< the campaign's, or the directory's
+  bool campaign = false;
+  std::vector<TestRecord> tests;
+  std::vector<LeftOut> left_out;
+};
+
+/// Reads `dir`: if it holds campaign.json, the records of that campaign with their roles; otherwise every
+/// directory with a record.csv in it, in `records` or in `dir`, with role fit. Records still being made
+/// (.part) do not count. Throws Error for a directory without any record, and naming file, line and column
+/// for a record that cannot be read.
+RecordFolder read_records(const std::filesystem::path& dir);
+
+/// The index of the first leg that shears, and of the last one that decompresses; legs.size() if there is
+/// none.
+std::size_t first_shear_leg(const TestRecord& test);
+std::size_t last_unloading_leg(const TestRecord& test);
+
+}  // namespace grainlaw::calibrate

@@ -1,0 +1,90 @@
+#include "grainlaw/calibrate/fit_records.hpp"
+
+#include "grainlaw/calibrate/fit_account.hpp"
+#include "grainlaw/calibrate/fit_checks.hpp"
+#include "grainlaw/calibrate/fit_parameters.hpp"
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::calibrate {
+namespace {
+
+/// The material of all records; predictions would be for none of them if they differed.
+Material common_material(const RecordFolder& folder) {
+  const TestRecord& first = folder.tests.front();
+  const Json material = first.material.to_json();
+  for (const TestRecord& test : folder.tests) {
+    const Json other = test.material.to_json();
+    for (const auto& [key, value] : material.items()) {
+      if (other.at(key) == value) continue;
+      throw Error((test.dir / "scene.json").string(), "material." + key,
+                  "must be " + value.dump() + " as in " + first.name +
+                      ", since one parameter set is one material, got " + other.at(key).dump());
+    }
+  }
+  return first.material;
+}
+
+void set_row(model::ShearLaws& shear, ShearQuantity quantity,
+             const std::optional<model::SaturationLaw>& row) {
+  switch (quantity) {
+    case ShearQuantity::s_max:
+      shear.s_max = row;
+      break;
+    case ShearQuantity::beta_s:
+      shear.beta_s = row;
+      break;
+    case ShearQuantity::F_max:
+      shear.F_max = row;
+      break;
+    case ShearQuantity::beta_F:
+      shear.beta_F = row;
+      break;
+  }
+}
+
+model::ShearLaws shear_laws(const Account& account, const Reference& reference) {
+  model::ShearLaws shear;
+  const bool nu_c_fitted = account.nu_c_fitted;
+  for (const ShearQuantity quantity : shear_quantities) {
+    const std::string name = name_of(quantity);
+    auto row = saturation_law(account.density.at(quantity), reference.shear(name),
+                              reference.thesis_shear(name), reference);
+    if (row && nu_c_fitted && row->nu_c.value == account.nu_c) {
+      row->nu_c.source = "fit";
+      row->nu_c.note = "nu_c of isotropic.iso";
+    }
+    if (row && account.density.at(quantity)["Q_max"].determined && row->Q_max.source == "assumed") {
+      row->Q_max.note = "held at 0, as in Table 2.2";
+    }
+    set_row(shear, quantity, row);
+  }
+  return shear;
+}
+
+}  // namespace
+
+FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::path& thesis,
+                      const Selection& selection) {
+  const RecordFolder folder = read_records(dir);
+  std::optional<model::ParameterSet> set;
+  if (!thesis.empty()) set = model::ParameterSet::load(thesis);
+  FitOutput out;
+  out.parameters.name = folder.name;
+  out.parameters.material = common_material(folder);
+  const Reference reference(set, out.parameters.material);
+  const Account account = fit_all(folder, reference, selection);
+
+  for (const auto& [mode, fit] : account.packing) {
+    const auto row = packing_law(fit, reference.packing(mode), reference.thesis_packing(mode), reference);
+    if (row) out.parameters.isotropic[mode] = *row;
+  }
+  out.parameters.shear = shear_laws(account, reference);
+  out.parameters.moduli = reference.moduli();
+  out.parameters.memory = reference.memory();
+  out.parameters.closure = {"iso", out.parameters.isotropic.contains("d2") ? "d2" : "iso", false};
+  out.fits = account.to_json();
+  out.fits["checks"] = physics_checks(account);
+  return out;
+}
+
+}  // namespace grainlaw::calibrate

@@ -1,0 +1,26 @@
+// The fit stage: records of element tests in, a parameter set and a full account of every fit out.
+// Records of role predict are fitted as well, but only for the account; no parameter ever depends on them.
+#pragma once
+
+#include <filesystem>
+
+#include "grainlaw/calibrate/fit_selection.hpp"
+#include "grainlaw/element/json.hpp"
+#include "grainlaw/model/parameters.hpp"
+
+namespace grainlaw::calibrate {
+
+struct FitOutput {
+  model::ParameterSet parameters;
+  Json fits;  ///< fits.json, see docs/fits.md
+};
+
+/// Fits all records of `dir`: the output directory of a campaign (campaign.json says each test's role), or
+/// any directory of records (all of role fit). `thesis` is the thesis's parameter set: its values stand
+/// beside the fitted ones if it is of the same w, replace what the data leave open, and fill the groups
+/// moduli and memory; with an empty path there are none of these. Throws Error for a directory without
+/// records, a record that cannot be read, records of different materials.
+FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::path& thesis = {},
+                      const Selection& selection = {});
+
+}  // namespace grainlaw::calibrate

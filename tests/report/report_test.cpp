@@ -1,0 +1,240 @@
+#include "grainlaw/apps/report/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <regex>
+
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/file.hpp"
+#include "grainlaw/element/json.hpp"
+#include "synthetic.hpp"
+#include "well_formed.hpp"
+
+namespace grainlaw::report {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/// A folder of its own for one test, removed afterwards.
+class ReportTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::replace(name.begin(), name.end(), '/', '-');
+    dir_ = fs::temp_directory_path() / ("grainlaw-report-" + std::to_string(getpid()) + "-" + name);
+    fs::remove_all(dir_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  test::Page page() const { return test::parse(report_html(dir_)); }
+
+  void edit(const std::string& file, const std::function<void(Json&)>& change) const {
+    Json json = load_json(dir_ / file);
+    change(json);
+    write_file(dir_ / file, json.dump());
+  }
+
+  fs::path dir_;
+};
+
+TEST_F(ReportTest, IsWellFormed) {
+  test::write_synthetic_campaign(dir_);
+  const auto parsed = page();
+  EXPECT_THAT(parsed.problems, IsEmpty());
+  for (const std::string& link : parsed.links) {
+    ASSERT_EQ(link[0], '#') << link;
+    EXPECT_THAT(parsed.ids, Contains(link.substr(1)));
+  }
+}
+
+TEST_F(ReportTest, IsOneFileThatNeedsNothingElse) {
+  test::write_synthetic_campaign(dir_);
+  write_report(dir_);
+  const std::string html = read_file(dir_ / "report.html");
+  for (const char* outside :
+       {"http://", "https://", "src=", "<script", "<link", "<img", "<iframe", "url(", "@import", "file:"}) {
+    EXPECT_THAT(html, Not(HasSubstr(outside)));
+  }
+  EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));
+  EXPECT_LT(html.size(), 3u << 20);
+}
+
+TEST_F(ReportTest, ShowsEveryFigure) {
+  test::write_synthetic_campaign(dir_);
+  const auto parsed = page();
+  for (const char* figure :
+       {"isotropic-C_star", "isotropic-phi_r", "isotropic-C_star_free_C0", "isotropic-P", "runs-d2-s_dev",
+        "runs-d2-F_dev", "saturation", "prediction-1", "prediction-2", "prediction-3"}) {
+    EXPECT_THAT(parsed.ids, Contains(std::string("figure-") + figure));
+  }
+  EXPECT_EQ(std::count(parsed.tags.begin(), parsed.tags.end(), "figure"), 10);
+}
+
+TEST_F(ReportTest, NeverShowsNan) {
+  test::write_synthetic_campaign(dir_);
+  edit("fits.json", [](Json& json) {
+    for (Json& fit : json["fits"]) {
+      fit["rms"] = nullptr;
+      fit["condition"] = nullptr;
+      fit["parameters"][0]["stderr"] = nullptr;
+      fit["data"][0]["y"][0] = nullptr;
+    }
+  });
+  const std::string html = report_html(dir_);
+  EXPECT_FALSE(std::regex_search(html, std::regex("\\b(nan|inf|null)\\b", std::regex::icase)));
+  EXPECT_THAT(html, HasSubstr("—"));
+}
+
+TEST_F(ReportTest, SameFilesGiveTheSameBytes) {
+  test::write_synthetic_campaign(dir_);
+  EXPECT_EQ(report_html(dir_), report_html(dir_));
+}
+
+TEST_F(ReportTest, PutsOurParametersBesideTheThesis) {
+  test::write_synthetic_campaign(dir_);
+  edit("parameters.json", [](Json& json) {
+    json["isotropic"]["iso"]["C1"]["value"] = 8.2720 + 3.5 * 0.12;
+    json["isotropic"]["iso"]["C1"]["stderr"] = 0.12;
+  });
+  const std::string html = report_html(dir_);
+  EXPECT_THAT(html,
+              HasSubstr("8.69 ± 0.12<div class=\"under\">thesis 8.272 <span class=\"far\">+3.5 σ</span>"));
+}
+
+TEST_F(ReportTest, SaysWhichNumbersWereNotFitted) {
+  test::write_synthetic_campaign(dir_);
+  const std::string html = report_html(dir_);
+  EXPECT_THAT(
+      html, HasSubstr("<td><var>a</var><sub>I</sub> (moduli)</td><td class=\"n\">0.66</td><td>thesis</td>"));
+  EXPECT_THAT(
+      html, HasSubstr("<td><var>C</var><sub>0</sub> of D2, ISO</td><td class=\"n\">6</td><td>assumed</td>"));
+}
+
+TEST_F(ReportTest, MarksFitsThatNoPredictionReads) {
+  test::write_synthetic_campaign(dir_);
+  EXPECT_THAT(page().text, HasSubstr("UNIfor comparison only"));
+}
+
+TEST_F(ReportTest, TellsChecksThatHoldFromThoseThatFail) {
+  test::write_synthetic_campaign(dir_);
+  const auto text = page().text;
+  EXPECT_THAT(text, HasSubstr("1 of 2 checks"));
+  EXPECT_THAT(text, HasSubstr("0.6650 > 0.6585✓ holds"));
+  EXPECT_THAT(text, HasSubstr("6.31 ± 0.08✗ fails"));
+}
+
+TEST_F(ReportTest, GivesStressInKiloPascals) {
+  test::write_synthetic_campaign(dir_);
+  edit("parameters.json", [](Json& json) { json["material"]["k"] = 2.0; });
+  const auto text = page().text;
+  // k/(2<r>) = 1 ug/(mm us^2) = 1 MPa.
+  EXPECT_THAT(text, HasSubstr("k/(2⟨r⟩) = 1000 kPa"));
+  EXPECT_THAT(text, HasSubstr("P (kPa)"));
+}
+
+TEST_F(ReportTest, ShowsPredictionErrorsOfEverySeed) {
+  test::write_synthetic_campaign(dir_);
+  EXPECT_THAT(page().text, HasSubstr("3.6 % (3.4, 3.8)"));
+}
+
+TEST_F(ReportTest, ShowsThatAPredictionStopped) {
+  test::write_synthetic_campaign(dir_);
+  edit("predictions.json",
+       [](Json& json) { json["predictions"][2]["status"] = "stopped at <0.1>: too stiff"; });
+  EXPECT_THAT(page().text, HasSubstr("stopped at <0.1>: too stiff"));
+}
+
+TEST_F(ReportTest, ExplainsItsSymbols) {
+  test::write_synthetic_campaign(dir_);
+  const auto text = page().text;
+  for (const char* name : {"nu_c_contacts", "phi_SJ", "gamma_b", "particle-step", "Fv_alpha"})
+    EXPECT_THAT(text, HasSubstr(name));
+}
+
+TEST_F(ReportTest, EscapesHostileNames) {
+  const fs::path canary = dir_.parent_path() / (dir_.filename().string() + "-canary");
+  test::Synthetic options;
+  options.name = "<script>alert(1)</script>\"'&";
+  options.uniaxial_test = "u<script>\"'&{x}^_@`id > " + canary.filename().string() + "`\\ν";
+  test::write_synthetic_campaign(dir_, options);
+  const auto parsed = page();
+  EXPECT_THAT(parsed.problems, IsEmpty());
+  EXPECT_THAT(parsed.tags, Not(Contains("script")));
+  EXPECT_THAT(parsed.text, HasSubstr(options.name));
+  EXPECT_THAT(parsed.text, HasSubstr("UNI: " + options.uniaxial_test));
+  EXPECT_FALSE(fs::exists(canary));
+}
+
+TEST_F(ReportTest, NamesRunsOfTheCampaignThatAreMissing) {
+  test::write_synthetic_campaign(dir_);
+  fs::rename(dir_ / "records" / "d3-0.72-s2", dir_ / "records" / "d3-0.72-s2.part");
+  const auto parsed = page();
+  EXPECT_THAT(parsed.problems, IsEmpty());
+  EXPECT_THAT(parsed.text, HasSubstr("1 of 18 tests of the campaign have not been run to their end"));
+  EXPECT_THAT(parsed.text, HasSubstr("not finished"));
+}
+
+TEST_F(ReportTest, ReadsNoPredictionOutsideItsFolder) {
+  test::write_synthetic_campaign(dir_);
+  fs::copy(dir_ / "predictions" / "d3-0.72-s1.coupled.csv", dir_.string() + "-outside.csv");
+  edit("predictions.json", [&](Json& json) {
+    for (Json& entry : json["predictions"]) entry["file"] = "../" + dir_.filename().string() + "-outside.csv";
+  });
+  const std::string html = report_html(dir_);
+  fs::remove(dir_.string() + "-outside.csv");
+  EXPECT_THAT(html, Not(HasSubstr("<title>coupled</title>")));
+}
+
+TEST_F(ReportTest, RefusesAFolderThatHoldsNothing) {
+  EXPECT_THROW(report_html(dir_), Error);
+  fs::create_directories(dir_);
+  EXPECT_THROW(report_html(dir_), Error);
+}
+
+/// What may happen to a file.
+enum class Harm { gone, cut, empty_object, wrong_type };
+
+class DamagedReport : public ReportTest,
+                      public ::testing::WithParamInterface<std::tuple<const char*, Harm>> {};
+
+TEST_P(DamagedReport, SaysWhatIsMissing) {
+  const auto& [file, harm] = GetParam();
+  test::write_synthetic_campaign(dir_);
+  const std::string whole = read_file(dir_ / file);
+  const bool csv = fs::path(file).extension() == ".csv";
+  if (harm == Harm::gone) fs::remove(dir_ / file);
+  if (harm == Harm::cut)
+    std::ofstream(dir_ / file, std::ios::binary) << whole.substr(0, whole.size() / 2 - 3);
+  if (harm == Harm::empty_object) std::ofstream(dir_ / file) << (csv ? "" : "{}");
+  if (harm == Harm::wrong_type) {
+    std::ofstream(dir_ / file) << (csv ? "nu,eps_dev\n0.7,nan\n"
+                                       : R"([{"fits": 3, "stages": "x", "material": []}])");
+  }
+  const auto parsed = page();
+  EXPECT_THAT(parsed.problems, IsEmpty());
+  const bool unreadable = harm == Harm::gone || (harm == Harm::cut && !csv) || (csv && harm != Harm::cut);
+  if (unreadable) {
+    EXPECT_THAT(parsed.text, HasSubstr(file));
+  }
+  EXPECT_FALSE(std::regex_search(parsed.text, std::regex("\\b(nan|inf)\\b")) && harm != Harm::wrong_type);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    EachFile, DamagedReport,
+    ::testing::Combine(::testing::Values("campaign.json", "parameters.json", "fits.json", "predictions.json",
+                                         "timing.json", "records/iso-s1/record.csv",
+                                         "records/iso-s1/scene.json", "records/d2-0.711-s1/provenance.json",
+                                         "predictions/uni-0.69-s1.coupled.csv"),
+                       ::testing::Values(Harm::gone, Harm::cut, Harm::empty_object, Harm::wrong_type)));
+
+}  // namespace
+}  // namespace grainlaw::report
