@@ -1,7 +1,9 @@
 #include "grainlaw/dem/scene.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "grainlaw/element/error.hpp"
 
@@ -13,8 +15,10 @@ constexpr std::int64_t fewest_grains = 8, most_grains = 10'000'000;
 constexpr std::int64_t largest_seed = std::int64_t{1} << 53;  ///< JSON readers keep whole numbers up to here
 constexpr std::int64_t most_frames = 1'000'000'000;
 constexpr std::int64_t most_rows = 100'000, most_segments = 1'000'000;
-constexpr double densest_gas = 0.45;   ///< random placement without overlap slows down without limit beyond
-constexpr double largest_step = 0.2;   ///< of the smallest contact duration
+constexpr double densest_gas = 0.45;  ///< random placement without overlap slows down without limit beyond
+constexpr double largest_step = 0.2;  ///< of the smallest contact duration
+constexpr double radius_slack =
+    0.01;  ///< mean and spread of radii may differ so much from the material's, in r_mean
 constexpr double target_slack = 1e-9;  ///< a target equal to an end of its segment up to rounding is inside
 
 Relaxation read_relaxation(Reader reader) {
@@ -90,6 +94,18 @@ void check_target(const SnapshotRequest& request, std::size_t index, const Leg& 
                 "must lie in " + segment + ", " + name + " from " + range + ", got " + to_text(wanted));
 }
 
+/// Four digits, enough to tell what is wrong.
+std::string short_text(double x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", x);
+  return text.data();
+}
+
+/// Without links and dots, whether or not there is something at that place.
+std::filesystem::path resolved(const std::filesystem::path& path) {
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path));
+}
+
 void check_segments_exist(const Scene& scene) {
   const auto& snapshots = scene.measure.snapshots;
   const std::size_t count = scene.path.segments.size();
@@ -151,8 +167,7 @@ FromSnapshot FromSnapshot::read(Reader reader, const std::filesystem::path& scen
 
 Json FromSnapshot::to_json(const std::filesystem::path& dir) const {
   auto path = snapshot;
-  if (!dir.empty() && path.is_relative())
-    path = std::filesystem::weakly_canonical(file).lexically_relative(std::filesystem::weakly_canonical(dir));
+  if (!dir.empty() && path.is_relative()) path = resolved(file).lexically_relative(resolved(dir));
   Json json{{"snapshot", path.generic_string()}};
   if (choice.nu) json["nu"] = *choice.nu;
   if (choice.frame) json["frame"] = *choice.frame;
@@ -230,6 +245,27 @@ Json Scene::to_json(const std::filesystem::path& dir) const {
 std::optional<double> Scene::start_nu() const {
   if (const auto* packing = std::get_if<NewPacking>(&preparation)) return packing->nu;
   return std::get<FromSnapshot>(preparation).choice.nu;
+}
+
+void Scene::check_grains(const State& state) const {
+  const auto* from = std::get_if<FromSnapshot>(&preparation);
+  if (from == nullptr) return;
+  double sum = 0, squares = 0;
+  for (const double r : state.radius) sum += r;
+  const double mean = sum / static_cast<double>(state.count());
+  for (const double r : state.radius) squares += (r - mean) * (r - mean);
+  const double spread = std::sqrt(squares / static_cast<double>(state.count()));
+  const double wanted_spread = (material.r_max() - material.r_min()) / std::sqrt(12.0);
+  const double slack = radius_slack * material.r_mean;
+  if (std::abs(mean - material.r_mean) > slack)
+    throw Error(file, "material.r_mean",
+                "must be that of the grains in " + from->file.string() + ", " + short_text(mean) +
+                    " mm, got " + to_text(material.r_mean));
+  if (std::abs(spread - wanted_spread) > slack)
+    throw Error(file, "material.w",
+                "must be that of the grains in " + from->file.string() + ", whose radii deviate by " +
+                    short_text(spread) + " mm from their mean; got " + to_text(material.w) +
+                    ", with which they would by " + short_text(wanted_spread) + " mm");
 }
 
 std::vector<Leg> Scene::legs(double nu) const {

@@ -122,6 +122,36 @@ TEST(Scene, LegsStartWhereTheGrainsAre) {
   EXPECT_THROW(scene.legs(0.7), Error);  // nothing to do
 }
 
+TEST(Scene, SnapshotPathIsRightFromAFolderYetToBeMade) {
+  const Scene scene = scene_of(with("preparation", R"({"snapshot": "old/snapshots.h5"})"), "scenes");
+  EXPECT_EQ(scene.to_json("not-yet/out")["preparation"]["snapshot"], "../../scenes/old/snapshots.h5");
+}
+
+TEST(Scene, GrainsOfASnapshotMustBeOfTheMaterial) {
+  State state;
+  for (int i = 0; i < 100; ++i) state.radius.push_back(0.5 + (i + 0.5) / 100);  // w = 3, mean 1 mm
+  const auto refusal_of = [&](const std::string& material) -> std::string {
+    const Scene scene = scene_of(R"({"material": )" + material +
+                                 R"(, "preparation": {"snapshot": "/a.h5"}, "path": )" + iso + "}");
+    try {
+      scene.check_grains(state);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal_of("{}"), "accepted");
+  EXPECT_EQ(refusal_of(R"({"k": 2e5, "rho": 1000})"), "accepted");
+  EXPECT_EQ(refusal_of(R"({"r_mean": 2})"),
+            "scene.json: material.r_mean: must be that of the grains in /a.h5, 1 mm, got 2");
+  EXPECT_EQ(
+      refusal_of(R"({"w": 2})"),
+      "scene.json: material.w: must be that of the grains in /a.h5, whose radii deviate by 0.2887 mm from "
+      "their mean; got 2, with which they would by 0.1925 mm");
+  EXPECT_NO_THROW(
+      scene_of(with("material", R"({"r_mean": 2})")).check_grains(state));  // makes its own grains
+}
+
 // ---- bad input, key by key
 
 TEST(SceneRefuses, UnknownKeys) {

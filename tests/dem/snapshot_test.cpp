@@ -19,6 +19,10 @@
 
 #include "grainlaw/element/error.hpp"
 
+/// HDF5 1.10 loses a piece of memory wherever it meets a damaged header: not ours to mend, nor for
+/// LeakSanitizer to report.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\n"; }
+
 namespace grainlaw::dem {
 namespace {
 
@@ -416,10 +420,10 @@ TEST_F(SnapshotTest, FolderThatIsNotThere) {
   EXPECT_THROW(SnapshotWriter(file("none") / "snapshots.h5", {1.0}), Error);
 }
 
-/// Runs `work` in a child process, kills it after `wait` if that is given, and returns its exit status (-1 if
-/// killed).
+/// Runs `work` in a child process and returns its exit status. With `begun`, kills the child `wait` after
+/// that file has appeared, and returns -1.
 template <typename Work>
-int in_child(Work&& work, std::optional<std::chrono::microseconds> wait = {}) {
+int in_child(Work&& work, const fs::path& begun = {}, std::chrono::microseconds wait = {}) {
   const pid_t child = fork();
   if (child == 0) {
     int status = 1;
@@ -429,8 +433,10 @@ int in_child(Work&& work, std::optional<std::chrono::microseconds> wait = {}) {
     }
     std::exit(status);  // with the exit handlers of HDF5
   }
-  if (wait) {
-    std::this_thread::sleep_for(*wait);
+  if (!begun.empty()) {
+    for (int i = 0; i < 20000 && !fs::exists(begun); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(wait);
     kill(child, SIGKILL);
   }
   int status = 0;
@@ -455,7 +461,7 @@ TEST_F(SnapshotTest, RunKilledWhileWritingLosesOneFrameAtMost) {
       }
       return 0;
     };
-    EXPECT_EQ(in_child(endless, std::chrono::microseconds(5000 + random() % 30000)), -1);
+    EXPECT_EQ(in_child(endless, file("done"), std::chrono::microseconds(random() % 20000)), -1);
     std::size_t done = 0;
     std::ifstream(file("done")) >> done;
     const auto frames = list_frames(file());
