@@ -31,7 +31,8 @@ void handle_signals(void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-  for (const int signal : signals) ::sigaction(signal, &action, nullptr);
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    if (before[i].sa_handler != SIG_IGN) ::sigaction(signals[i], &action, nullptr);  // nohup stays nohup
 }
 
 }  // namespace

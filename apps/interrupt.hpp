@@ -10,6 +10,7 @@ namespace grainlaw::apps {
 class Interrupt {
  public:
   /// From now on SIGINT, SIGTERM and SIGHUP set stop(); a second one ends the process as if nobody listened.
+  /// One that is ignored (nohup) stays so.
   Interrupt();
   /// Signals do again what they did before.
   ~Interrupt();

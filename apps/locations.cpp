@@ -16,22 +16,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int levels_up = 4;  // build/apps/grainlaw lies two below the source tree
-
 std::vector<fs::path> data_folders() {
   std::vector<fs::path> folders{"data"};
   if (const char* home = std::getenv("GRAINLAW_HOME"); home != nullptr && *home != '\0')
     folders.push_back(fs::path(home) / "data");
   std::error_code code;
   const fs::path program = fs::read_symlink("/proc/self/exe", code);
-  if (!code) {
-    fs::path above = program.parent_path();
-    folders.push_back(above / GRAINLAW_DATA_FROM_PROGRAM);
-    for (int i = 0; i < levels_up && above.has_relative_path(); ++i) {
-      above = above.parent_path();
-      folders.push_back(above / "data");
-    }
-  }
+  if (!code)
+    for (const char* from_program :
+         {"../data", GRAINLAW_DATA_FROM_PROGRAM})  // of the build tree, of an installation
+      folders.push_back(program.parent_path() / from_program);
   return folders;
 }
 

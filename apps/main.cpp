@@ -72,6 +72,8 @@ int run_command_line(int argc, char** argv) {
     write_stdout(success.get_name() == "CallForVersion" ? success.what() : program.help());
     return all_well;
   } catch (const CLI::ParseError& error) {
+    if (argc > 1 && argv[1][0] == '-')
+      return complain_usage(program, fmt::format("unknown option {}", argv[1]));
     return complain_usage(program, error.what());
   }
   for (std::size_t i = 0; i < commands.size(); ++i)

@@ -1,6 +1,7 @@
 // grainlaw predict: the law as a material point along a path.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -37,8 +38,8 @@ Followed read_followed(const fs::path& where) {
   const fs::path file = where / "scene.json";
   Followed followed{dem::Scene::read(Reader(load_json(file), file.string()), where).path,
                     Record::read_csv(where / "record.csv", {"segment", "eps_vol", "eps_dev", "nu"})};
-  if (followed.record->rows() == 0) throw Error((where / "record.csv").string(), "", "has no rows");
-  followed.path.start.nu = (*followed.record)["nu"].front();
+  const Record& record = *followed.record;
+  followed.path.start.nu = record["nu"].front() * std::exp(-record["eps_vol"].front());
   return followed;
 }
 

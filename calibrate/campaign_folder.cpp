@@ -1,5 +1,7 @@
 #include "grainlaw/calibrate/campaign_folder.hpp"
 
+#include <vector>
+
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 
@@ -23,6 +25,21 @@ std::string something_else(const fs::path& dir) {
   for (const auto& entry : fs::directory_iterator(dir))
     if (const std::string name = entry.path().filename().string(); !of_no_account(name)) return name;
   return "";
+}
+
+/// Removes files that a killed run was about to rename: NAME.partNUMBER.
+void remove_leftovers(const fs::path& dir) {
+  std::vector<fs::path> leftovers;
+  for (const fs::path& place : {dir, dir / "predictions"}) {
+    if (!fs::is_directory(place)) continue;
+    for (const auto& entry : fs::directory_iterator(place)) {
+      const std::string kind = entry.path().extension().string();
+      const bool numbered = kind.starts_with(".part") && kind.size() > 5 &&
+                            kind.find_first_not_of("0123456789", 5) == std::string::npos;
+      if (numbered && entry.is_regular_file()) leftovers.push_back(entry.path());
+    }
+  }
+  for (const auto& file : leftovers) fs::remove(file);
 }
 
 void check_usable(const fs::path& dir, const Campaign& campaign, CampaignFolder::Use use) {
@@ -55,6 +72,7 @@ CampaignFolder::CampaignFolder(const Campaign& campaign, fs::path dir, Use use) 
   if (code) throw Error(dir_.string(), "", "cannot be made: " + code.message());
   try {
     lock_ = std::make_unique<LockFile>(dir_ / lock_name, dir_);
+    remove_leftovers(dir_);
     if (fs::exists(dir_ / campaign_name))
       check_usable(dir_, campaign, use);  // another process was quicker
     else

@@ -39,8 +39,8 @@ class BadInput : public Program {
 TEST_F(BadInput, UnknownKey) {
   EXPECT_TRUE(
       refuses(simulate(scene(R"("w")", R"("W")")), {"s.json: material.W: unknown key, did you mean w?"}));
-  EXPECT_TRUE(refuses(simulate(scene(R"("rows")", R"("rwos")")),
-                      {"s.json: measure.rwos: unknown key, did you mean rows?"}));
+  EXPECT_TRUE(refuses(simulate(scene(R"("rows")", R"("rowss")")),
+                      {"s.json: measure.rowss: unknown key, did you mean rows?"}));
   EXPECT_TRUE(refuses(simulate(scene(R"("nu")", R"("density")")),
                       {"s.json: path.segments[0].controls.density: unknown key"}));
 }
@@ -137,9 +137,8 @@ TEST_F(BadInput, ADiskThatIsFull) {
   EXPECT_TRUE(refuses(
       run({"predict", "data/thesis/parameters.json", "data/paths/uni.json", "-o", "p.csv"}, {"", 1000}),
       {"p.csv: cannot be written: File too large"}));
-  EXPECT_TRUE(refuses(run({"fit", "data", "-o", "x.json"}, {"", 1000}), {"data"}));
   write("s.json", scene());
-  for (const long limit : {0L, 1000L, 3000L})  // scene.json, record.csv and snapshots.h5 do not fit
+  for (const long limit : {300L, 1000L, 3000L})  // scene.json, record.csv and snapshots.h5 do not fit
     EXPECT_TRUE(refuses(run({"simulate", "s.json", "-o", "out"}, {"", limit}), {"out"})) << limit;
   EXPECT_THAT(listing("out"), IsEmpty());
   for (const auto& name : listing(".")) EXPECT_EQ(name.find(".part"), std::string::npos) << name;
@@ -159,7 +158,7 @@ TEST_F(BadInput, CommandLines) {
   const std::vector<std::pair<Arguments, std::string>> lines{
       {{}, "grainlaw: A subcommand is required"},
       {{"calibrat"}, "unknown command \"calibrat\""},
-      {{"--vesion"}, "--vesion"},
+      {{"--vesion"}, "grainlaw: unknown option --vesion; see grainlaw --help"},
       {{"simulate"}, "grainlaw simulate: SCENE.json is required; see grainlaw simulate --help"},
       {{"simulate", "s.json"}, "--output is required"},
       {{"calibrate", "--jobs", "0"}, "--jobs: must be a whole number from 1 to 1024, got 0"},

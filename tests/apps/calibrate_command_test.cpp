@@ -170,11 +170,10 @@ TEST_F(Calibrate, AFailedTestSkipsItsDependentsAndTheRestGoesOn) {
 }
 
 TEST_F(Calibrate, AFullDiskEndsItAndResumeGoesOn) {
-  const Outcome outcome = run({"calibrate", "c.json", "-o", "out/a", "--jobs", "1"},
-                              {"", 40'000});  // record.csv of iso is larger
+  const Outcome outcome = run({"calibrate", "c.json", "-o", "out/a", "--jobs", "1"}, {"", 40'000});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, testing::EndsWith("cannot be written: File too large\n"));
-  EXPECT_THAT(outcome.err, HasSubstr("out/a/records/iso-s1.part/record.csv: "));
+  EXPECT_THAT(outcome.err, HasSubstr("out/a/records/iso-s1.part/"));
   EXPECT_THAT(records("out/a"), testing::IsEmpty());
   EXPECT_EQ(run({"calibrate", "c.json", "-o", "out/a", "--resume"}).status, 0);
 }
@@ -194,10 +193,12 @@ TEST_F(Calibrate, SpoiltRecordsAreNamed) {
                         {record + ": eps_dev: line 2: must be a finite number or empty, got \"" + value}))
         << value;
   }
-  spoil(good.find("sigma_dev"), 9, "sigma");
-  EXPECT_TRUE(refuses(run({"fit", "out/a"}), {record + ": sigma_dev: column is missing"}));
-  spoil(good.size() - 20, 20, "");
-  EXPECT_TRUE(refuses(run({"fit", "out/a"}), {record + ": line"}));
+  spoil(good.find(",s_dev,"), 7, ",s,");
+  EXPECT_TRUE(refuses(run({"fit", "out/a"}), {record + ": s_dev: column is missing"}));
+  for (const std::size_t cut : {1, 5, 20, 1000}) {
+    spoil(good.size() - cut, cut, "");
+    EXPECT_TRUE(refuses(run({"fit", "out/a"}), {record + ": is cut short"})) << cut;
+  }
   write(record, "");
   EXPECT_TRUE(refuses(run({"fit", "out/a"}), {record + ": is empty"}));
   EXPECT_EQ(read("out/a/parameters.json"), parameters);  // not touched by a fit that failed

@@ -30,6 +30,8 @@ std::atomic<int> started{0};  ///< to tell the output files apart
   if (out_descriptor < 0 || err_descriptor < 0 || ::dup2(out_descriptor, STDOUT_FILENO) < 0 ||
       ::dup2(err_descriptor, STDERR_FILENO) < 0 || ::chdir(folder) != 0)
     ::_exit(126);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    ::signal(signal, SIG_DFL);  // a test run may ignore them, users do not
   if (file_limit >= 0) {
     const struct rlimit limit { static_cast<rlim_t>(file_limit), static_cast<rlim_t>(file_limit) };
     if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);

@@ -215,6 +215,18 @@ TEST_F(RunCampaign, AForeignFolderIsLeftAlone) {
   EXPECT_THAT(names, ElementsAre("thesis.tex"));
 }
 
+TEST_F(RunCampaign, FilesThatAKilledRunWasWritingAreCleared) {
+  { const auto first = open(); }
+  for (const char* name :
+       {"fits.json.part123", "predictions/a.csv.part7", "records/mine.part1", "my.partition", "fits.json"})
+    fs::create_directories((dir / name).parent_path()), write_file(dir / name, "half");
+  { const auto again = open(CampaignFolder::Use::resume); }
+  EXPECT_FALSE(fs::exists(dir / "fits.json.part123"));
+  EXPECT_FALSE(fs::exists(dir / "predictions/a.csv.part7"));
+  for (const char* name : {"records/mine.part1", "my.partition", "fits.json"})
+    EXPECT_TRUE(fs::exists(dir / name)) << name;
+}
+
 TEST_F(RunCampaign, AnIncompleteRecordIsNotTakenForOne) {
   run_campaign(campaign, open(), options());
   fs::remove(dir / "records/iso-s2/record.csv");
