@@ -104,6 +104,10 @@ Record Record::read_csv(const std::filesystem::path& path, const std::vector<std
     ++line;
     return true;
   };
+  if (!text.empty() && text.back() != '\n')
+    throw Error(
+        file, "",
+        "is cut short: its last line does not end with a newline");  // half a number reads as a whole one
   std::string_view current;
   if (!next(current)) throw Error(file, "", "is empty; a record starts with a header line");
   std::vector<std::string> names;

@@ -54,6 +54,7 @@ TEST_F(RecordFile, RefusesWhatIsNotARecord) {
   EXPECT_EQ(refusal("nu,P\n0.7\n"), "line 2: must have 2 fields, got 1");
   EXPECT_EQ(refusal("nu,nu\n0.7,1\n"), "nu: line 1: column is given twice");
   EXPECT_EQ(refusal("nu\n0.7\n", {"P"}), "P: column is missing");
+  EXPECT_EQ(refusal("nu,P\n0.7,0.0123"), "is cut short: its last line does not end with a newline");
   EXPECT_EQ(refusal("nu,P\r\n0.7,\r\n"), "accepted");
 }
 
