@@ -125,6 +125,10 @@ FitResult fit(const FitProblem& problem) {
   FitResult result;
   while (true) {
     const std::vector<std::size_t> free = free_parameters(now);
+    if (free.empty()) {
+      result = not_fitted(now, "the data determine none of the parameters");
+      break;
+    }
     if (const std::string why = too_few(now, free.size()); !why.empty()) {
       const auto next = next_to_hold(now, free);
       if (count_points(now) == 0 || !next) {

@@ -39,12 +39,7 @@ Panel overview(const std::vector<const FitView*>& fits, const Inputs& inputs, Ar
   Panel panel{area, "", axis_label(first.x_name, first.x_label), axis_label(first.y_name, first.y_label), {},
               {},   {}};
   for (const FitView* fit : fits) {
-    for (Series& series : measured(*fit)) {
-      // Without a curve, the points stand in the legend for their mode.
-      if (!fit->ran()) series.label = fit->mode_label();
-      series.in_legend = !fit->ran();
-      panel.series.push_back(std::move(series));
-    }
+    for (Series& series : measured(*fit)) panel.series.push_back(std::move(series));
   }
   for (const FitView* fit : fits) {
     if (!fit->ran()) continue;
@@ -125,7 +120,13 @@ Markup family_figure(const std::vector<const FitView*>& fits, const Inputs& inpu
   figure.panels.insert(figure.panels.begin(), overview(fits, inputs, {66, 12, 450, height}));
   const auto x_range = common_range(figure.panels[0]);
   for (Panel& panel : figure.panels) panel.x_range = x_range;
-  figure.key = {{"DEM", Draw::dots, measured_colour, {}, {}}, {"fit", Draw::line, measured_colour, {}, {}}};
+  for (const FitView* fit : fits) {
+    if (!fit->ran())
+      figure.key.push_back(
+          {fit->mode_label() + ", too few for a fit", Draw::dots, mode_colour(fit->mode), {}, {}});
+  }
+  figure.key.push_back({"DEM", Draw::dots, measured_colour, {}, {}});
+  figure.key.push_back({"fit", Draw::line, measured_colour, {}, {}});
   const bool with_thesis =
       std::any_of(fits.begin(), fits.end(), [](const FitView* fit) { return !fit->thesis_curve.x.empty(); });
   if (with_thesis) figure.key.push_back({"thesis, Table 2.1", Draw::dashes, measured_colour, {}, {}});

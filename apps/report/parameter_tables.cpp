@@ -106,6 +106,7 @@ Markup below(const Entry& entry) {
     Markup line;
     if (entry.thesis) line += "thesis "_html + text(number(*entry.thesis, 6));
     if (entry.determined) line += difference(entry);
+    if (!entry.note.empty()) line += element("div", prose(entry.note));
     return line;
   }
   Markup line = text(entry.source == "thesis" ? "from the thesis" : entry.source);

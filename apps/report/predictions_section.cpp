@@ -3,6 +3,7 @@
 
 #include "grainlaw/apps/report/figure.hpp"
 #include "grainlaw/apps/report/numbers.hpp"
+#include "grainlaw/apps/report/prose.hpp"
 #include "grainlaw/apps/report/sections.hpp"
 #include "grainlaw/apps/report/symbols.hpp"
 
@@ -120,17 +121,39 @@ std::string error_cell(const TestPredictions& test, const std::string& form, con
   return cell + ")";
 }
 
+/// Different texts of the runs of one form, in order of appearance.
+void add_if_new(std::vector<std::string>& texts, const std::string& text) {
+  if (!text.empty() && std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+}
+
+/// How the predictions of one form ended; a form that failed or was refused stands out.
 Markup status_cell(const TestPredictions& test, const std::string& form) {
-  std::vector<std::string> bad;
+  std::vector<std::string> endings;
   for (const PredictedRun* run : test.runs) {
     const std::string status = text_in(run->entry, "status");
-    const bool new_words = std::find(bad.begin(), bad.end(), status) == bad.end();
-    if (run->form == form && status != "ok" && !status.empty() && new_words) bad.push_back(status);
+    if (run->form == form) add_if_new(endings, status == "ok" ? "to the end" : status);
   }
-  if (bad.empty()) return "to the end"_html;
   std::vector<Markup> words;
-  for (const std::string& status : bad) words.push_back(text(status));
-  return element("span", join(words, "; "_html), {{"class", "bad"}});
+  for (const std::string& ending : endings) {
+    const bool bad = ending.starts_with("failed") || ending.starts_with("refused");
+    words.push_back(bad ? element("span", prose(ending), {{"class", "bad"}}) : prose(ending));
+  }
+  return words.empty() ? text(nothing) : join(words, "; "_html);
+}
+
+/// What the law said about its own predictions of this test.
+Markup law_warnings(const TestPredictions& test) {
+  std::vector<std::string> warnings;
+  for (const PredictedRun* run : test.runs) {
+    const Json& list = value_in(run->entry, "warnings");
+    if (!list.is_array()) continue;
+    for (const Json& warning : list) {
+      if (warning.is_string()) add_if_new(warnings, form_name(run->form) + ": " + warning.get<std::string>());
+    }
+  }
+  Markup items;
+  for (const std::string& warning : warnings) items += element("li", prose(warning)) + "\n"_html;
+  return items.empty() ? items : element("ul", items, {{"class", "note"}});
 }
 
 Markup error_table(const TestPredictions& test) {
@@ -138,7 +161,7 @@ Markup error_table(const TestPredictions& test) {
   Table table;
   table.column("Relative error along the path"_html);
   for (const std::string& quantity : quantities) table.column(symbol(quantity), Table::Kind::figures);
-  table.column("Integrated"_html);
+  table.column("How it ended"_html);
   for (const std::string& form : forms_of(test)) {
     std::vector<Markup> cells{text(form_name(form))};
     for (const std::string& quantity : quantities) cells.push_back(text(error_cell(test, form, quantity)));
@@ -184,7 +207,7 @@ Markup test_figure(const Inputs& inputs, const TestPredictions& test, std::size_
   figure.caption = element("b", text(test.test)) + text(" (" + mode_name(test.mode) + "), " + seeds) +
                    start_sentence(test);
   return "<h3>"_html + text(mode_name(test.mode) + ": " + test.test) + "</h3>\n"_html + draw(figure) +
-         error_table(test);
+         error_table(test) + law_warnings(test);
 }
 
 }  // namespace

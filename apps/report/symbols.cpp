@@ -76,7 +76,7 @@ const std::vector<Symbol> shear{
     {"shear.alpha", "<var>α</var>", "{/:Italic α}", "–",
      "How fast that addition dies away with nu/nu_c − 1."},
     {"shear.nu_c", "<var>ν</var><sub>c</sub>", "{/:Italic ν}_c", "–",
-     "Reference volume fraction of that decay; prescribed, not fitted."},
+     "Reference volume fraction of that decay: the jamming point of ISO, given to the fit."},
 };
 
 const std::vector<Symbol> moduli{

@@ -1,5 +1,6 @@
 #include "grainlaw/calibrate/fit_packing.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -69,6 +70,15 @@ TEST(PackingFits, ReturnTheThesisParametersFromNoiseFreeData) {
     EXPECT_GE(fit.contacts.best_found, 1);
     EXPECT_TRUE(fit.contacts.exit.starts_with("converged")) << fit.contacts.exit;
   }
+}
+
+TEST(PackingFits, FreeC0LooksOnlyNearJamming) {
+  // Far above jamming the contacts leave the law; the limit must not notice.
+  PackingSeries bent = branch(iso, 0.82, 0.667, 100);
+  for (PackingState& s : bent.states) s.C_star -= s.nu > 0.75 ? 3 * std::pow(s.nu - 0.75, 2) : 0;
+  const PackingFit fit = fit_packing({bent}, Points::rows, {});
+  EXPECT_NEAR(fit.contacts_free_C0.value("C0"), 6, 1e-6);
+  EXPECT_GT(std::abs(fit.contacts.value("C1") - iso.C1), 1e-3);
 }
 
 TEST(PackingFits, FreeC0FindsAnotherC0ThanSix) {
@@ -227,6 +237,12 @@ TEST(PackingFits, HoldWhatTooFewVolumeFractionsLeaveOpen) {
   EXPECT_NEAR(fit.contacts.value("C1"), 8.2720, 1e-6);
   EXPECT_FALSE(fit.pressure["gamma_p"].determined);
   EXPECT_NEAR(fit.pressure.value("p0"), 0.04172, 1e-8);
+
+  // Without known values, what cannot be fitted is not a number, and nothing else is made up for it.
+  fit = fit_packing({two}, Points::runs, {});
+  EXPECT_TRUE(std::isnan(fit.contacts.value("C1")));
+  EXPECT_FALSE(fit.rattlers.ran);
+  EXPECT_THAT(fit.rattlers["phi_c"].reason, testing::HasSubstr("nu_c_contacts"));
 
   fit = fit_packing({}, Points::rows, known);
   for (const FitEstimate& e : fit.pressure.parameters) {

@@ -119,6 +119,20 @@ TEST(FitProblem, BoundsAreKeptAndReported) {
   EXPECT_TRUE(r["b"].determined);
 }
 
+TEST(FitProblem, NothingLeftToFitIsNoFit) {
+  // Both are open and can be held: what remains is said, not fitted.
+  FitProblem problem = line_through({{0, 1}});
+  for (FitParameter& p : problem.parameters) p.fallback = 2;
+  FitResult r = fit(problem);
+  EXPECT_FALSE(r.ran);
+  EXPECT_EQ(r.value("a"), 2);
+  EXPECT_FALSE(r["b"].reason.empty());
+  problem.parameters[0].held = problem.parameters[1].held = true;
+  r = fit(problem);
+  EXPECT_FALSE(r.ran);
+  EXPECT_TRUE(r.determined()) << "given values are not in question";
+}
+
 TEST(FitProblem, ErrorOfAHeldParameterGoesIntoTheOthers) {
   // a held at 1 +- 0.3: with x = 1, 2, 3, 4 the slope moves by -0.3 sum(x)/sum(x^2).
   FitProblem problem = line_through({{1, 3}, {2, 5}, {3, 7}, {4, 9}});

@@ -154,6 +154,22 @@ TEST(ShearFits, AStraightTrendPressesTheLimitAgainstZero) {
   EXPECT_TRUE(r["alpha"].determined);
 }
 
+TEST(ShearFits, AFitThatRestsOnABoundIsStillAtItsMinimum) {
+  // With Q_max on its bound 0, the other two must be those of the law without Q_max, from every start.
+  const double nu[] = {0.67, 0.68, 0.70, 0.72, 0.75, 0.78, 0.81},
+               beta[] = {76.4, 44.2, 70.3, 62.7, 45.9, 23.2, 25.9};
+  std::vector<RunValue> values;
+  for (int i = 0; i < 7; ++i) values.push_back({"d2", "1", nu[i], beta[i], 1});
+  const FitResult stress = fit(density_problem(ShearQuantity::beta_s, values, nu_c, 0, {}));
+  const FitResult fabric =
+      fit(density_problem(ShearQuantity::beta_F, values, nu_c, 0, {}));  // Q_max is held at 0
+  EXPECT_TRUE(stress["Q_max"].at_bound);
+  EXPECT_EQ(stress.value("Q_max"), 0);
+  EXPECT_NEAR(stress.value("Q_v"), fabric.value("Q_v"), 1e-5 * fabric.value("Q_v"));
+  EXPECT_NEAR(stress.value("alpha"), fabric.value("alpha"), 1e-5 * fabric.value("alpha"));
+  EXPECT_EQ(stress.best_found, stress.starts);
+}
+
 TEST(ShearFits, ScatterAsLargeAsTheTrendLeavesTheExponentialOpen) {
   Noise noise(25);
   std::vector<RunValue> values;

@@ -106,8 +106,9 @@ TEST_F(ReportTest, PutsOurParametersBesideTheThesis) {
     json["isotropic"]["iso"]["C1"]["stderr"] = 0.12;
   });
   const std::string html = report_html(dir_);
-  EXPECT_THAT(html,
-              HasSubstr("8.69 ± 0.12<div class=\"under\">thesis 8.272 <span class=\"far\">+3.5 σ</span>"));
+  EXPECT_THAT(
+      html,
+      HasSubstr("8.69 ± 0.12</span><div class=\"under\">thesis 8.272 <span class=\"far\">+3.5 σ</span>"));
 }
 
 TEST_F(ReportTest, SaysWhichNumbersWereNotFitted) {
@@ -149,8 +150,8 @@ TEST_F(ReportTest, ShowsPredictionErrorsOfEverySeed) {
 TEST_F(ReportTest, ShowsThatAPredictionStopped) {
   test::write_synthetic_campaign(dir_);
   edit("predictions.json",
-       [](Json& json) { json["predictions"][2]["status"] = "stopped at <0.1>: too stiff"; });
-  EXPECT_THAT(page().text, HasSubstr("stopped at <0.1>: too stiff"));
+       [](Json& json) { json["predictions"][2]["status"] = "failed: <0.1> is too stiff"; });
+  EXPECT_THAT(page().text, HasSubstr("failed: <0.1> is too stiff"));
 }
 
 TEST_F(ReportTest, ExplainsItsSymbols) {

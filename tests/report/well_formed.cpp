@@ -23,7 +23,6 @@ class Parser {
       } else if (html_[at_] == '&') {
         page_.text += entity();
       } else {
-        if (html_[at_] == '>') problem("a bare >");
         page_.text += html_[at_++];
       }
     }
