@@ -13,6 +13,7 @@
 #include "grainlaw/apps/commands.hpp"
 #include "grainlaw/apps/interrupt.hpp"
 #include "grainlaw/apps/locations.hpp"
+#include "grainlaw/apps/report/gnuplot.hpp"
 #include "grainlaw/apps/report/report.hpp"
 #include "grainlaw/apps/stage_times.hpp"
 #include "grainlaw/apps/summary.hpp"
@@ -63,7 +64,7 @@ std::string quoted(const std::string& word) {
 
 /// The command that goes on where this one stopped.
 std::string resume_command(const Arguments& arguments, const fs::path& dir) {
-  std::string command = "grainlaw calibrate";
+  std::string command = quoted(program_name()) + " calibrate";
   if (!arguments.campaign.empty()) command += " " + quoted(arguments.campaign);
   command += " -o " + quoted(dir.string());
   if (!arguments.jobs.empty()) command += " --jobs " + arguments.jobs;
@@ -89,6 +90,7 @@ class Calibration {
                                  resume_command(arguments_, folder_.dir())));
       return interrupted;
     }
+    if (simulated.reused + simulated.finished == 0) return say_failures(simulated);  // nothing to fit
     interrupt_.end_at_once("stopped; all finished tests are kept; go on with: " +
                            resume_command(arguments_, folder_.dir()));
     fit_and_predict();
@@ -96,11 +98,7 @@ class Calibration {
     times_.measure("report", [&] { report::write_report(folder_.dir()); });
     talk_.say(fmt::format("report: {} ({} in all)", (folder_.dir() / "report.html").string(),
                           time_text(times_.total_s())));
-    if (simulated.failed.empty()) return all_well;
-    talk_.complain(fmt::format("{} of the tests failed, see {}; try them again with: {}",
-                               simulated.failed.size(), (folder_.dir() / "failures.json").string(),
-                               resume_command(arguments_, folder_.dir())));
-    return failed;
+    return simulated.failed.empty() ? all_well : say_failures(simulated);
   }
 
  private:
@@ -115,6 +113,13 @@ class Calibration {
     talk_.say(fmt::format("simulated {} tests in {}{}", result.finished, time_text(result.wall_s),
                           result.reused > 0 ? fmt::format(", kept {} from before", result.reused) : ""));
     return result;
+  }
+
+  int say_failures(const calibrate::CampaignResult& simulated) {
+    talk_.complain(fmt::format("{} of the tests failed, see {}; try them again with: {}",
+                               simulated.failed.size(), (folder_.dir() / "failures.json").string(),
+                               resume_command(arguments_, folder_.dir())));
+    return failed;
   }
 
   void fit_and_predict() {
@@ -143,8 +148,10 @@ class Calibration {
 };
 
 int run(const Arguments& arguments) {
-  worker_count(arguments);  // a wrong --jobs is said before anything is made
+  worker_count(arguments);  // what would end the run is said before it begins, not after the simulation
   const auto campaign = calibrate::Campaign::load(campaign_file(arguments));
+  find_thesis(campaign.material.w);
+  report::run_gnuplot("");
   const fs::path dir =
       arguments.output.empty() ? fs::path("out") / campaign.name : fs::path(arguments.output);
   return Calibration(arguments, campaign, dir).run();

@@ -40,6 +40,14 @@ fs::path find_data(const std::string& name) {
               "no such file, nor where the program was built or installed");
 }
 
+std::string program_name() {
+  const char* home = std::getenv("GRAINLAW_HOME");
+  if (home == nullptr || *home == '\0') return "grainlaw";
+  std::error_code code;
+  return fs::equivalent(home, fs::current_path(code), code) ? "./grainlaw"
+                                                            : (fs::path(home) / "grainlaw").string();
+}
+
 fs::path find_thesis(double w) {
   constexpr double main_set_w = 3;
   std::error_code code;

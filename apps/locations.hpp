@@ -10,6 +10,10 @@ namespace grainlaw::apps {
 /// built in, or where it was installed. Throws Error naming ./data/... if it is nowhere.
 std::filesystem::path find_data(const std::string& name);
 
+/// What the user types to run the program: "./grainlaw" or its full path where the entry script of a source
+/// tree runs it (GRAINLAW_HOME), else "grainlaw".
+std::string program_name();
+
 /// The thesis's parameter set to hold beside fits of a material of this w = r_max/r_min: the one for the same
 /// w (thesis/w-W.json) if there is one, else thesis/parameters.json (w = 3).
 std::filesystem::path find_thesis(double w);

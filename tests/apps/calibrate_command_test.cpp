@@ -105,7 +105,7 @@ TEST_F(Calibrate, SIGINTKeepsWhatIsFinishedAndSaysHowToGoOn) {
   running->send(SIGINT);
   const Outcome outcome = running->wait();
   EXPECT_EQ(outcome.status, 130);
-  EXPECT_THAT(outcome.err, HasSubstr("go on with: grainlaw calibrate c.json -o out/a --jobs 1 --resume"));
+  EXPECT_THAT(outcome.err, HasSubstr("grainlaw calibrate c.json -o out/a --jobs 1 --resume"));
   EXPECT_LT(records("out/a").size(), 5u);
   for (const auto& name : listing("out/a")) EXPECT_EQ(name.find(".part"), std::string::npos) << name;
   resume_and_compare("out/a");
@@ -167,6 +167,16 @@ TEST_F(Calibrate, AFailedTestSkipsItsDependentsAndTheRestGoesOn) {
   const Json failure = json("out/a/failures.json").at("failures").at(0);
   EXPECT_EQ(failure.at("record"), "flat-s1");
   EXPECT_EQ(failure.at("skipped"), Json::array({"after-s1"}));
+}
+
+TEST_F(Calibrate, WhereEveryTestFailsThereIsNothingToFit) {
+  write("c.json",
+        R"({"name": "c", "preparation": {"count": 8}, "seeds": [1], "tests": [{"name": "flat", "role": "fit",
+      "path": {"segments": [{"mode": "components", "strain": [3, -3, 0]}]}}]})");
+  const Outcome outcome = run({"calibrate", "c.json", "-o", "out/a"});
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("1 of the tests failed, see out/a/failures.json"));
+  EXPECT_FALSE(has("out/a/parameters.json"));
 }
 
 TEST_F(Calibrate, AFullDiskEndsItAndResumeGoesOn) {
