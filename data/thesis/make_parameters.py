@@ -86,8 +86,10 @@ def shear_w3():
 
 
 def moduli_w3():
-    group = {row["parameter"]: parameter(row["value"], "Table 4.1" + (" (approximate)" if row["approximate"] == "yes" else ""),
-                                         row["pm"]) for row in table("table-4.1")}
+    group = {}
+    for row in table("table-4.1"):
+        note = "Table 4.1" + (" (approximate)" if row["approximate"] == "yes" else "")
+        group[row["parameter"]] = parameter(row["value"], note, row["pm"])
     group |= {key: constant("moduli", key) for key in ("g3", "GB_max", "Fv_min", "Fv_alpha")}
     order = ("p0", "gamma_p", "nu_c", "g3", "a_I", "a_II", "g_I", "GB_max", "Fv_min", "Fv_alpha")
     return {key: group[key] for key in order}
@@ -102,8 +104,11 @@ def isotropic_near_jamming():
     """Table 5.1, where phi_J(H) stands in place of nu_c: its value after phi_max = 0.82, and after large shear."""
     rows = {row["parameter"]: row for row in table("table-5.1")}
     jammed = next(r for r in table("text-results") if r["condition"] == "M = 1 and phi_max = 0.82")
-    densities = {"isotropic": parameter(jammed["value"], "phi_J after M = 1 and phi_max = 0.82 (Fig. 5.5), where chapter 5 has phi_J(H)"),
-                 "shear": parameter(constants("memory")["phi_SJ"]["value"], "phi_SJ, the limit of large shear, where chapter 5 has phi_J(H)")}
+    where = "where chapter 5 has phi_J(H)"
+    densities = {
+        "isotropic": parameter(jammed["value"], f"phi_J after M = 1 and phi_max = 0.82 (Fig. 5.5), {where}"),
+        "shear": parameter(constants("memory")["phi_SJ"]["value"], f"phi_SJ, the limit of large shear, {where}"),
+    }
     modes = {}
     for mode, column in (("iso", "isotropic"), ("d2", "shear")):
         def take(name):
@@ -111,9 +116,9 @@ def isotropic_near_jamming():
             spread = row[column + "_pm"]
             return parameter(row[column], join("Table 5.1", f"a range of +- {spread}" if spread else ""))
         nu_c = densities[column]
-        modes[mode] = {"C0": constant("isotropic", "C0"), "C1": take("C1"), "alpha": take("theta"), "nu_c_contacts": nu_c,
-                       "phi_c": take("phi_c"), "phi_v": take("phi_v"), "p0": take("p0"), "gamma_p": take("gamma_p"),
-                       "nu_c": nu_c}
+        modes[mode] = {"C0": constant("isotropic", "C0"), "C1": take("C1"), "alpha": take("theta"),
+                       "nu_c_contacts": nu_c, "phi_c": take("phi_c"), "phi_v": take("phi_v"), "p0": take("p0"),
+                       "gamma_p": take("gamma_p"), "nu_c": nu_c}
     return modes
 
 
@@ -131,9 +136,9 @@ def isotropic_of(w):
         nu_c = cell(row, "nu_c", "Table 3.4")
         alpha = parameter(constants("isotropic")["alpha_w"]["value"], "held fixed, text after Eq. 3.12")
         rest = {key: cell(row, key, "Table 3.4") for key in ("C1", "phi_c", "phi_v", "p0", "gamma_p")}
-        modes[row["mode"]] = {"C0": constant("isotropic", "C0"), "C1": rest["C1"], "alpha": alpha, "nu_c_contacts": nu_c,
-                              "phi_c": rest["phi_c"], "phi_v": rest["phi_v"], "p0": rest["p0"], "gamma_p": rest["gamma_p"],
-                              "nu_c": nu_c}
+        modes[row["mode"]] = {"C0": constant("isotropic", "C0"), "C1": rest["C1"], "alpha": alpha,
+                              "nu_c_contacts": nu_c, "phi_c": rest["phi_c"], "phi_v": rest["phi_v"],
+                              "p0": rest["p0"], "gamma_p": rest["gamma_p"], "nu_c": nu_c}
     return modes
 
 
@@ -151,7 +156,7 @@ def shear_of(w):
 
 def moduli_of(w):
     rows = {row["parameter"]: row for row in table("table-4.2")}
-    take = lambda name: parameter(rows[name]["value"], "Table 4.2; " + "mean over w = 1 to 10 at nu = 0.751")
+    take = lambda name: parameter(rows[name]["value"], "Table 4.2; mean over w = 1 to 10 at nu = 0.751")
     w3 = moduli_w3()
     assumed = lambda name: parameter(w3[name]["value"], "of w = 3; the thesis gives none for this w", source="assumed")
     b_p0 = round(float(rows["b"]["value"]) * float(constants("moduli")["p0_w"]["value"]), 9)
@@ -159,9 +164,11 @@ def moduli_of(w):
     phi_c = next(float(r["phi_c"]) for r in table("table-3.4") if r["mode"] == "d2" and float(r["w"]) == w)
     C0 = float(constants("isotropic")["C0"]["value"])
     fv_min = w3["Fv_min"] if w == 3 else parameter(
-        round(g3 * nu_c * C0 * (1 - phi_c), 4), "g3 nu_c C0 (1 - phi_c): the fabric at jamming; the thesis gives none for this w",
-        source="assumed")
-    return {"p0": parameter(b_p0, "b p0 = 1.08 x 0.0396 of Table 4.2 and the text after Eq. 4.17; the 0.0425 printed beside b is their product"),
+        round(g3 * nu_c * C0 * (1 - phi_c), 4),
+        "g3 nu_c C0 (1 - phi_c): the fabric at jamming; the thesis gives none for this w", source="assumed")
+    p0_note = ("b p0 = 1.08 x 0.0396 of Table 4.2 and the text after Eq. 4.17; "
+               "the 0.0425 printed beside b is their product")
+    return {"p0": parameter(b_p0, p0_note),
             "gamma_p": assumed("gamma_p") if w != 3 else w3["gamma_p"],
             "nu_c": parameter(nu_c, "Eq. 3.11 with Table 3.2 (d2)"), "g3": parameter(g3, "Eq. 3.8"),
             "a_I": take("a_I"), "a_II": take("a_II"), "g_I": take("g_I"),
@@ -182,8 +189,8 @@ def all_sets():
                                              moduli=moduli_w3(), memory=memory())
     for row in table("table-3.3"):
         w = float(row["w"])
-        yield f"w-{row['w']}.json", parameter_set(f"thesis, w = {row['w']}", w, closure("row"), isotropic=isotropic_of(w),
-                                                  shear=shear_of(w), moduli=moduli_of(w))
+        yield f"w-{row['w']}.json", parameter_set(f"thesis, w = {row['w']}", w, closure("row"),
+                                                  isotropic=isotropic_of(w), shear=shear_of(w), moduli=moduli_of(w))
 
 
 def layout(value, indent=""):
@@ -191,7 +198,7 @@ def layout(value, indent=""):
     if not isinstance(value, dict):
         return json.dumps(value, ensure_ascii=False)
     if not any(isinstance(inner, dict) for inner in value.values()):
-        return "{" + ", ".join(f"{json.dumps(k)}: {json.dumps(v, ensure_ascii=False)}" for k, v in value.items()) + "}"
+        return "{" + ", ".join(f"{json.dumps(k)}: {layout(v)}" for k, v in value.items()) + "}"
     inner = indent + "  "
     return "{\n" + ",\n".join(f"{inner}{json.dumps(k)}: {layout(v, inner)}" for k, v in value.items()) + f"\n{indent}}}"
 

@@ -3,7 +3,7 @@
 
     check_schemas.py DATA schemas           they are valid, every key is described, every number has a unit
     check_schemas.py DATA examples          every example under DATA obeys its schema
-    check_schemas.py DATA documents TABLE…  tables of documents to accept and to reject (documents_test.cpp reads the same)
+    check_schemas.py DATA documents TABLE…  tables of documents to accept and to reject (as documents_test.cpp)
     check_schemas.py DATA written DIR       files that grainlaw wrote into DIR obey their schemas
     check_schemas.py DATA mutants DIR       the readers and the schemas agree on documents spoilt in one place
 """
@@ -114,7 +114,8 @@ def check_examples(schemas, data):
             if reason:
                 faults.append(f"{file.relative_to(data)}: {reason}")
     known = {data / folder for folder in kinds} | {data / "schema"}
-    faults += [f"{file.relative_to(data)}: under no schema" for file in data.rglob("*.json") if file.parent not in known]
+    faults += [f"{file.relative_to(data)}: under no schema"
+               for file in data.rglob("*.json") if file.parent not in known]
     return faults, count
 
 
@@ -221,8 +222,8 @@ def main():
     data, what, rest = pathlib.Path(sys.argv[1]), sys.argv[2], [pathlib.Path(arg) for arg in sys.argv[3:]]
     schemas = Schemas(data / "schema")
     checks = {"schemas": lambda: check_schemas(schemas), "examples": lambda: check_examples(schemas, data),
-              "documents": lambda: check_documents(schemas, data, rest), "written": lambda: check_written(schemas, *rest),
-              "mutants": lambda: check_mutants(schemas, *rest)}
+              "documents": lambda: check_documents(schemas, data, rest),
+              "written": lambda: check_written(schemas, *rest), "mutants": lambda: check_mutants(schemas, *rest)}
     faults, count = checks[what]()
     if count == 0:
         faults.append("nothing to check")
