@@ -51,6 +51,7 @@ WrittenOrigin read_origin(Reader reader) {
     origin.nu =
         origin.list ? reader.numbers("nu", inside(0, 1)) : std::vector{reader.number("nu", inside(0, 1))};
   }
+  reader.optional({"segment", "nu"});
   reader.finish();
   return origin;
 }

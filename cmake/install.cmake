@@ -11,7 +11,8 @@ foreach(room element dem model calibrate)
     install(TARGETS grainlaw_${room} EXPORT grainlaw-${room} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
     install(EXPORT grainlaw-${room} NAMESPACE grainlaw:: DESTINATION ${grainlaw_package_dir})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/grainlaw
-            FILES_MATCHING PATTERN *.hpp)
+            FILES_MATCHING PATTERN *.hpp
+            PATTERN snapshot_hdf5.hpp EXCLUDE)  # private: needs HDF5's headers
   endif()
 endforeach()
 if(TARGET grainlaw_program)

@@ -239,6 +239,10 @@ std::vector<std::string> Reader::keys() const {
   return names;
 }
 
+void Reader::optional(std::initializer_list<std::string_view> keys) {
+  for (const auto key : keys) known_.emplace(key);
+}
+
 void Reader::finish() const {
   for (const auto& [name, value] : object_->items()) {
     if (known_.contains(name)) continue;

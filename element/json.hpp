@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -62,6 +63,8 @@ class Reader {
   const Json& raw(std::string_view key);  ///< required, any type; counts as asked for
   std::vector<std::string> keys() const;  ///< all keys present
 
+  /// Makes keys known that were looked at only if present, so that finish() can suggest them.
+  void optional(std::initializer_list<std::string_view> keys);
   /// Throws Error for the first key that was not asked for, naming the nearest known one.
   void finish() const;
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;
