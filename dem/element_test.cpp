@@ -160,7 +160,9 @@ State ElementTest::first_state(const Scene& scene) {
   if (const auto* packing = std::get_if<NewPacking>(&scene.preparation))
     return random_gas(scene.material, *packing);
   const auto& from = std::get<FromSnapshot>(scene.preparation);
-  return read_frame(from.file, from.choice);
+  const State state = read_frame(from.file, from.choice);
+  scene.check_grains(state);
+  return state;
 }
 
 void ElementTest::plan() {

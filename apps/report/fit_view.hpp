@@ -41,6 +41,8 @@ struct FitView {
   /// One run's s_dev or F_dev over eps_dev.
   bool of_one_run() const { return x_name == "eps_dev"; }
   bool for_comparison() const { return role == "predict"; }
+  /// Neither needed by a prediction nor made, for want of data.
+  bool idle() const { return for_comparison() && !ran(); }
   /// "D2", "D2 (for comparison only)".
   std::string mode_label() const;
 };

@@ -107,9 +107,46 @@ Markup quality_of(const std::string& title, const std::vector<const FitView*>& f
   return element("p", intro) + table.html("small");
 }
 
+/// A list of reasons, each with everything it holds for before it.
+class Reasons {
+ public:
+  void add(const std::string& what, const std::string& reason) {
+    const auto known =
+        std::find_if(list_.begin(), list_.end(), [&](const auto& r) { return r.first == reason; });
+    if (known == list_.end()) {
+      list_.emplace_back(reason, what);
+    } else {
+      known->second += ", " + what;
+    }
+  }
+  Markup html() const {
+    Markup items;
+    for (const auto& [reason, what] : list_) {
+      items +=
+          element("li", element("b", text(what)) + ": "_html + prose(reason.empty() ? nothing : reason)) +
+          "\n"_html;
+    }
+    return items.empty() ? items : element("ul", items);
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> list_;
+};
+
+/// Fits of tests kept for comparison that had too few data.
+Markup not_run(const std::vector<FitView>& fits) {
+  Reasons reasons;
+  for (const FitView& fit : fits) {
+    if (fit.idle()) reasons.add(fit.name, text_in(fit.json, "exit"));
+  }
+  const Markup list = reasons.html();
+  return list.empty() ? list : element("p", "<b>For comparison only, too few data.</b>"_html) + list;
+}
+
 Markup quality(const std::vector<FitView>& fits) {
   std::vector<const FitView*> isotropic, runs, saturation, other;
   for (const FitView& fit : fits) {
+    if (fit.idle()) continue;
     auto& family = fit.group == "isotropic" ? isotropic
                    : fit.group == "shear"   ? saturation
                    : fit.of_one_run()       ? runs
@@ -119,6 +156,7 @@ Markup quality(const std::vector<FitView>& fits) {
   return "<h3>Residual, condition, exit</h3>\n"_html + quality_of("Isotropic laws", isotropic) +
          quality_of("Shear of single runs", runs) +
          quality_of("Saturation over volume fraction", saturation) + quality_of("Other fits", other) +
+         not_run(fits) +
          element("p",
                  "Points in brackets: how many independent points the rows are worth, since neighbouring "
                  "rows of one run resemble each other. Residual: root mean square of data − fit, in the unit "
@@ -130,26 +168,14 @@ Markup quality(const std::vector<FitView>& fits) {
                  {{"class", "note"}});
 }
 
-/// Records that a fit could not use, together where the reason is the same.
 Markup left_out(const Inputs& inputs) {
   const Json& list = value_in(inputs.fits, "left_out");
-  if (!list.is_array() || list.empty()) return {};
-  std::vector<std::pair<std::string, std::string>> reasons;
-  for (const Json& entry : list) {
-    const std::string reason = text_in(entry, "reason"), test = text_in(entry, "test");
-    const auto known =
-        std::find_if(reasons.begin(), reasons.end(), [&](const auto& r) { return r.first == reason; });
-    if (known == reasons.end()) {
-      reasons.emplace_back(reason, test);
-    } else {
-      known->second += ", " + test;
-    }
+  Reasons reasons;
+  if (list.is_array()) {
+    for (const Json& entry : list) reasons.add(text_in(entry, "test"), text_in(entry, "reason"));
   }
-  Markup items;
-  for (const auto& [reason, tests] : reasons) {
-    items += element("li", element("b", text(tests)) + ": "_html + prose(reason)) + "\n"_html;
-  }
-  return "<h3>Records that a fit did not take</h3>\n"_html + element("ul", items);
+  const Markup items = reasons.html();
+  return items.empty() ? items : "<h3>Records that a fit did not take</h3>\n"_html + items;
 }
 
 }  // namespace

@@ -73,17 +73,21 @@ Markup prediction_summary(const Inputs& inputs) {
          table.html();
 }
 
-/// Parameters of one fit that share a reason, in one line.
-Markup not_determined(const Inputs& inputs) {
+/// Parameters of one fit that share a reason, in one line. Fits that are listed as not made are left out.
+Markup not_determined(const Inputs& inputs, const std::vector<FitView>& fits) {
   const Json& list = value_in(inputs.fits, "not_determined");
   if (!list.is_array() || list.empty()) return {};
   std::vector<std::pair<std::array<std::string, 2>, std::vector<Markup>>> lines;
   for (const Json& entry : list) {
     const std::array<std::string, 2> key{text_in(entry, "fit"), text_in(entry, "reason")};
+    const bool idle = std::any_of(fits.begin(), fits.end(),
+                                  [&](const FitView& fit) { return fit.name == key[0] && fit.idle(); });
+    if (idle) continue;
     if (lines.empty() || lines.back().first != key) lines.push_back({key, {}});
     const std::string group = key[0].substr(0, key[0].find('.'));
     lines.back().second.push_back(symbol(text_in(entry, "parameter"), group));
   }
+  if (lines.empty()) return {};
   Markup items;
   for (const auto& [key, names] : lines) {
     items += element("li", join(names, ", "_html) + " of "_html + element("code", text(key[0])) + ": "_html +
@@ -97,7 +101,7 @@ Markup not_determined(const Inputs& inputs) {
 
 Markup headline(const Inputs& inputs, const std::vector<FitView>& fits) {
   return checks(inputs) + prediction_summary(inputs) + parameter_tables(inputs, fits) +
-         not_determined(inputs);
+         not_determined(inputs, fits);
 }
 
 }  // namespace grainlaw::report

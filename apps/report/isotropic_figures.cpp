@@ -111,11 +111,12 @@ Markup family_figure(const std::vector<const FitView*>& fits, const Inputs& inpu
   figure.name = "isotropic-" + first.family;
   figure.alt = "Data and fitted curves of " + first.y_name + " over volume fraction, one colour per mode";
   figure.smallest_width = "640px";
-  const double height = std::max(300.0, 92.0 * static_cast<double>(fits.size()));
-  figure.height = height + 62;
+
   std::vector<const FitView*> with_curve;
   std::copy_if(fits.begin(), fits.end(), std::back_inserter(with_curve),
                [](const FitView* fit) { return fit->ran(); });
+  const double height = std::max(300.0, 92.0 * static_cast<double>(with_curve.size()));
+  figure.height = height + 62;
   figure.panels = residuals(with_curve, {640, 12, 266, height});
   figure.panels.insert(figure.panels.begin(), overview(fits, inputs, {66, 12, 450, height}));
   const auto x_range = common_range(figure.panels[0]);
@@ -123,7 +124,7 @@ Markup family_figure(const std::vector<const FitView*>& fits, const Inputs& inpu
   for (const FitView* fit : fits) {
     if (!fit->ran())
       figure.key.push_back(
-          {fit->mode_label() + ", too few for a fit", Draw::dots, mode_colour(fit->mode), {}, {}});
+          {mode_name(fit->mode) + ", too few for a fit", Draw::dots, mode_colour(fit->mode), {}, {}});
   }
   figure.key.push_back({"DEM", Draw::dots, measured_colour, {}, {}});
   figure.key.push_back({"fit", Draw::line, measured_colour, {}, {}});

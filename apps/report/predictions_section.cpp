@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "grainlaw/apps/report/axis.hpp"
 #include "grainlaw/apps/report/figure.hpp"
 #include "grainlaw/apps/report/numbers.hpp"
 #include "grainlaw/apps/report/prose.hpp"
@@ -76,25 +78,59 @@ Series series_of(const Record& record, const std::string& x, const std::string& 
   return series;
 }
 
+/// The range of s_dev where the packing carries load: the ratio of two vanishing stresses is noise.
+std::array<double, 2> loaded_range(const std::vector<const Record*>& records) {
+  double largest = 0;
+  for (const Record* record : records) {
+    for (const double P : (*record)["P"]) largest = std::max(largest, std::isfinite(P) ? P : 0);
+  }
+  std::vector<double> values;
+  for (const Record* record : records) {
+    const auto& P = (*record)["P"];
+    const auto& s = (*record)["s_dev"];
+    for (std::size_t i = 0; i < P.size(); ++i) {
+      if (P[i] > 0.01 * largest) values.push_back(s[i]);
+    }
+  }
+  return padded_range(values);
+}
+
+/// Records of the DEM and of the law that have the columns P and s_dev.
+std::vector<const Record*> with_stress(const TestPredictions& test, const std::vector<const Run*>& measured) {
+  std::vector<const Record*> records;
+  const auto add = [&](const std::optional<Record>& record) {
+    if (record && record->has("P") && record->has("s_dev")) records.push_back(&*record);
+  };
+  for (const Run* run : measured) add(run->record);
+  for (const PredictedRun* run : test.runs) add(run->record);
+  return records;
+}
+
+Series prediction_style(const std::string& form) {
+  return {form_name(form), draw_of(form), form_colour(form), {}, {}};
+}
+
 Panel quantity_panel(const Inputs& inputs, const TestPredictions& test,
                      const std::vector<const Run*>& measured, const std::string& quantity, Area area) {
   const std::string x = abscissa(test, measured);
   Panel panel{area, "", axis_label(x, ""), axis_label(quantity, ""), {}, {}, {}};
-  for (const Run* run : measured) {
-    Series dots = series_of(*run->record, x, quantity, dots_per_run);
-    dots.draw = Draw::dots;
-    dots.colour = measured_colour;
-    dots.label = "DEM";
-    panel.series.push_back(std::move(dots));
+  const auto add = [&](Series style, const Record& record, std::size_t most) {
+    Series series = series_of(record, x, quantity, most);
+    style.x = std::move(series.x);
+    style.y = std::move(series.y);
+    style.in_legend = false;
+    panel.series.push_back(std::move(style));
+  };
+  for (const Run* run : measured)
+    add({"DEM", Draw::dots, measured_colour, {}, {}}, *run->record, dots_per_run);
+  // Whole lines first, broken ones over them: forms that coincide can both be seen.
+  for (const Draw draw : {Draw::line, Draw::dashes, Draw::dotted}) {
+    for (const PredictedRun* run : test.runs) {
+      if (run->record && draw_of(run->form) == draw)
+        add(prediction_style(run->form), *run->record, points_per_line);
+    }
   }
-  for (const PredictedRun* run : test.runs) {
-    if (!run->record) continue;
-    Series line = series_of(*run->record, x, quantity, points_per_line);
-    line.draw = draw_of(run->form);
-    line.colour = form_colour(run->form);
-    line.label = form_name(run->form);
-    panel.series.push_back(std::move(line));
-  }
+  if (quantity == "s_dev") panel.y_range = loaded_range(with_stress(test, measured));
   const auto unit = inputs.stress_unit_kPa();
   if (unit && (quantity == "P" || quantity == "sigma_dev")) {
     panel.right_unit = *unit;
@@ -186,7 +222,7 @@ Markup start_sentence(const TestPredictions& test) {
   if (!start.is_object() || start.empty()) return {};
   std::vector<Markup> pieces;
   for (const auto& [name, value] : start.items()) {
-    if (!value.is_null()) pieces.push_back(symbol(name) + " = "_html + text(plain_value(value)));
+    if (!value.is_null()) pieces.push_back(symbol(name) + " = "_html + prose(plain_value(value)));
   }
   return " Start of the first: "_html + join(pieces, ", "_html) + "."_html;
 }
@@ -203,6 +239,8 @@ Markup test_figure(const Inputs& inputs, const TestPredictions& test, std::size_
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     figure.panels.push_back(quantity_panel(inputs, test, measured, quantities[i], areas[i]));
   }
+  figure.key = {{"DEM", Draw::dots, measured_colour, {}, {}}};
+  for (const std::string& form : forms_of(test)) figure.key.push_back(prediction_style(form));
   const std::string seeds = std::to_string(measured.size()) + (measured.size() == 1 ? " seed." : " seeds.");
   figure.caption = element("b", text(test.test)) + text(" (" + mode_name(test.mode) + "), " + seeds) +
                    start_sentence(test);
@@ -217,12 +255,13 @@ Markup predictions_section(const Inputs& inputs) {
   if (tests.empty()) return absent("No predictions: predictions.json is not there, or holds none.");
   Markup section =
       "<p>The law, with the fitted parameters, follows the strain path of tests that no fit has read. Dots "
-      "are the DEM's, all "
-      "seeds; lines are the law in its three forms: the reduced law with the current ν in Eqs. 2.17 and 2.18 "
-      "(closed form), "
-      "the same as rate equations (rate form), and the coupled law of Eq. 4.16, in which stress and fabric "
-      "act on each other. "
-      "In the tables: mean over seeds, each seed in brackets.</p>\n"_html;
+      "are "
+      "the DEM's, all seeds; lines are the law in its three forms: the reduced law with the current "
+      "<var>ν</var> in Eqs. 2.17 and 2.18 (closed form), the same as rate equations (rate form), and the "
+      "coupled law of Eq. 4.16, in which stress and fabric act on each other. The scale of "
+      "<var>s</var><sub>dev</sub> leaves out where <var>P</var>* is below a hundredth of its largest value. "
+      "In "
+      "the tables: mean over seeds, each seed in brackets.</p>\n"_html;
   std::size_t n = 0;
   for (const TestPredictions& test : tests) section += test_figure(inputs, test, ++n);
   return section;
