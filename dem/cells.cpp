@@ -50,7 +50,7 @@ Cells::Cells(const std::vector<Quad>& place, const Box& box, double range) {
   for (std::uint32_t i = 0; i < place.size(); ++i) order_[next[cell[i]]++] = i;
 }
 
-void Cells::list_pairs(const std::vector<Quad>& place, const Box& box, double skin, Pairs& pairs) const {
+void Cells::list_pairs(const std::vector<Quad>& place, const Box& box, double skin, NearPairs& pairs) const {
   static const std::vector<std::array<int, 3>> forward = forward_neighbours();
   const std::array<Quad, 27> shifts = box.shifts();
   pairs.begin.assign(1, 0);

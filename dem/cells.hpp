@@ -6,9 +6,20 @@
 #include <vector>
 
 #include "grainlaw/dem/box.hpp"
-#include "grainlaw/dem/pairs.hpp"
 
 namespace grainlaw::dem {
+
+/// All pairs within a range, grain by grain.
+struct NearPairs {
+  std::vector<std::uint32_t> begin{0};  ///< grain i's: partner[begin[i]] ... partner[begin[i+1]-1]
+  std::vector<std::uint32_t> partner;
+  struct Crossing {
+    std::uint32_t i, j, image;
+  };
+  std::vector<Crossing> crossing;  ///< those that meet through a face of the box
+
+  std::size_t count() const { return partner.size() + crossing.size(); }
+};
 
 class Cells {
  public:
@@ -22,7 +33,7 @@ class Cells {
 
   /// All pairs closer than r_i + r_j + skin <= range, each once; `place` in the order of order().
   /// Throws Error if two grains lie at the same point.
-  void list_pairs(const std::vector<Quad>& place, const Box& box, double skin, Pairs& pairs) const;
+  void list_pairs(const std::vector<Quad>& place, const Box& box, double skin, NearPairs& pairs) const;
 
  private:
   std::array<int, 3> count_;

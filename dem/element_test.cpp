@@ -64,8 +64,8 @@ class Watch {
 /// What happens at which step of a leg.
 struct LegPlan {
   StepPlan stepping;
-  std::vector<std::uint64_t> rows;                          ///< steps after which to measure, rising
-  std::vector<std::pair<std::uint64_t, double>> snapshots;  ///< steps, rising, and the progress there
+  std::vector<std::uint64_t> rows;       ///< steps after which to measure, rising
+  std::vector<std::uint64_t> snapshots;  ///< steps after which to take one, rising
   double progress(const Leg& leg, std::uint64_t step) const {
     return step >= stepping.steps ? 1.0 : leg.progress(static_cast<double>(step) * stepping.dt);
   }
@@ -99,7 +99,7 @@ LegPlan plan_leg(const Leg& leg, std::size_t index, const Measure& measure, doub
       const double share = at_rest ? 1 : leg.time_at(wanted_progress(wanted, leg, nu_start)) / leg.duration;
       const auto step =
           std::min(plan.stepping.steps, static_cast<std::uint64_t>(std::ceil(share * steps * (1 - 1e-12))));
-      plan.snapshots.emplace_back(step, 0.0);
+      plan.snapshots.push_back(step);
     }
   std::sort(plan.snapshots.begin(), plan.snapshots.end());
   plan.snapshots.erase(std::unique(plan.snapshots.begin(), plan.snapshots.end()), plan.snapshots.end());
@@ -227,14 +227,14 @@ void ElementTest::walk(Dynamics& dynamics, std::size_t index, RowWriter& rows) {
       write_row(step);
       ++next_row;
     }
-    if (next_snapshot != plan.snapshots.end() && next_snapshot->first == step) {
+    if (next_snapshot != plan.snapshots.end() && *next_snapshot == step) {
       take_snapshot(dynamics, rows, index, plan.progress(leg, step));
       ++next_snapshot;
     }
     return watch_.step();
   };
   watch_.enter(stage_name(index), plan.stepping.steps);
-  if (next_snapshot != plan.snapshots.end() && next_snapshot->first == 0) {
+  if (next_snapshot != plan.snapshots.end() && *next_snapshot == 0) {
     take_snapshot(dynamics, rows, index, 0);
     ++next_snapshot;
   }

@@ -1,9 +1,9 @@
 #include "grainlaw/dem/neighbours.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include "grainlaw/dem/cells.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::dem {
@@ -14,6 +14,7 @@ constexpr double rest_budget = 0.01;    // s_i of a grain at rest, in units of t
 constexpr double box_budget = 1e-3;     // 1 - e_min: the compression of the box that an inner list survives
 constexpr double outer_skin = 0.7;      // in units of the mean radius; less where the box is narrow
 constexpr double least_skin = 0.02;     // the narrowest outer skin worth listing
+constexpr std::size_t block = 32;       // grains whose pairs are interleaved
 constexpr double flight_share = 0.125;  // s_i at most this share of the outer skin
 
 /// Smallest stretch, at most 1.
@@ -107,25 +108,62 @@ void Neighbours::filter(const Grains& grains, const Box& box) {
     return x * x + y * y + z * z < reach * reach;
   };
   const std::array<Quad, 27> shifts = box.shifts();
-  inner_.begin.resize(count + 1);
-  inner_.partner.resize(outer_.partner.size());
+  near_begin_.resize(count + 1);
+  near_.resize(outer_.partner.size() + 1);
   std::uint32_t n = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Quad a = inner_reference_[i];
-    inner_.begin[i] = n;
+    near_begin_[i] = n;
     for (std::uint32_t p = outer_.begin[i]; p < outer_.begin[i + 1]; ++p) {
       const std::uint32_t j = outer_.partner[p];
-      inner_.partner[n] = j;  // kept or overwritten by the next one: no branch to mispredict
+      near_[n] = j;  // kept or overwritten by the next one: no branch to mispredict
       n += near(a, inner_reference_[j], {}) ? 1u : 0u;
     }
   }
-  inner_.begin[count] = n;
-  inner_.partner.resize(n);
-  inner_.crossing.clear();
-  for (const auto& pair : outer_.crossing)
-    if (near(inner_reference_[pair.i], inner_reference_[pair.j], shifts[pair.image]))
-      inner_.crossing.push_back(pair);
+  near_begin_[count] = n;
+  interleave(grains);
+  PairList& crossing = inner_.crossing;
+  crossing.pairs.clear();
+  crossing.reach.clear();
+  crossing.image.clear();
+  for (const auto& [i, j, image] : outer_.crossing)
+    if (near(inner_reference_[i], inner_reference_[j], shifts[image])) {
+      crossing.pairs.push_back({i, j});
+      crossing.reach.push_back(grains.place[i].w + grains.place[j].w);
+      crossing.image.push_back(image);
+    }
+  crossing.fill_up();
   for (std::size_t i = 0; i < count; ++i) inner_reference_[i].w = budget_[i] * budget_[i];
+}
+
+/// Orders the pairs so that those taken together have different grains i where possible (the first partners
+/// of a block of grains, then their second partners, ...): adding to one force four times in a row would wait
+/// for memory each time.
+void Neighbours::interleave(const Grains& grains) {
+  const std::size_t count = grains.count();
+  PairList& within = inner_.within;
+  within.pairs.resize(near_begin_[count]);
+  within.reach.resize(near_begin_[count]);
+  std::size_t n = 0;
+  std::array<std::uint32_t, block> open{};
+  for (std::size_t first = 0; first < count; first += block) {
+    std::size_t left = 0;
+    for (std::size_t i = first; i < std::min(first + block, count); ++i)
+      if (near_begin_[i] < near_begin_[i + 1]) open[left++] = static_cast<std::uint32_t>(i);
+    for (std::uint32_t rank = 0; left > 0; ++rank) {
+      std::size_t kept = 0;
+      for (std::size_t k = 0; k < left; ++k) {
+        const std::uint32_t i = open[k], j = near_[near_begin_[i] + rank];
+        within.pairs[n] = {i, j};
+        within.reach[n] = grains.place[i].w + grains.place[j].w;
+        ++n;
+        open[kept] = i;
+        kept += near_begin_[i] + rank + 1 < near_begin_[i + 1] ? 1u : 0u;
+      }
+      left = kept;
+    }
+  }
+  within.fill_up();
 }
 
 }  // namespace grainlaw::dem

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/cells.hpp"
 #include "grainlaw/dem/grains.hpp"
 #include "grainlaw/dem/pairs.hpp"
 
@@ -41,10 +42,14 @@ class Neighbours {
   bool outer_covers(const Grains& grains, const Box& box) const;
   void sort_and_list(Grains& grains, const Box& box);
   void filter(const Grains& grains, const Box& box);
+  void interleave(const Grains& grains);
 
   double unit_, largest_radius_;
   double outer_skin_ = 0;
-  Pairs outer_, inner_;
+  NearPairs outer_;
+  Pairs inner_;
+  std::vector<std::uint32_t> near_begin_,
+      near_;                           ///< the filtered pairs grain by grain, before they are interleaved
   std::vector<double> budget_;         ///< s_i, mm
   std::vector<Quad> inner_reference_;  ///< X | s_i^2, of the inner list
   std::vector<Quad> outer_reference_;  ///< X, of the outer list

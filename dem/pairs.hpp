@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -11,18 +12,34 @@
 
 namespace grainlaw::dem {
 
+/// Pairs in the order in which the force loop takes them, four at a time.
+struct PairList {
+  struct Pair {
+    std::uint32_t i, j;
+  };
+  std::vector<Pair> pairs;
+  std::vector<double> reach;         ///< r_i + r_j, mm
+  std::vector<std::uint32_t> image;  ///< of j that i meets; only where pairs cross a face of the box
+  std::size_t count = 0;             ///< without the pairs that fill up the last four
+
+  /// Pairs taken at a time; lists are filled up to a multiple of it with pairs that never touch (i = j, reach
+  /// < 0).
+  static constexpr std::size_t group = 4;
+  void fill_up() {
+    count = pairs.size();
+    const std::size_t whole = (count + group - 1) / group * group;
+    pairs.resize(whole, {0, 0});
+    reach.resize(whole, -1.0);
+    if (!image.empty()) image.resize(whole, Box::home_image);
+  }
+};
+
 /// Most pairs lie within the box and need no image; those that meet through a face of it are kept apart, with
 /// the image of j that i meets. So the loop over pairs never searches for the nearest image, and a small box
-/// may hold the same pair twice, through different images.
+/// may hold the same two grains twice, through different images.
 struct Pairs {
-  std::vector<std::uint32_t> begin{0};  ///< pairs of grain i: partner[begin[i]] ... partner[begin[i+1]-1]
-  std::vector<std::uint32_t> partner;
-  struct Crossing {
-    std::uint32_t i, j, image;
-  };
-  std::vector<Crossing> crossing;
-
-  std::size_t count() const { return partner.size() + crossing.size(); }
+  PairList within, crossing;
+  std::size_t count() const { return within.count + crossing.count; }
 };
 
 /// One contact as observers see it.
@@ -36,19 +53,17 @@ struct Contact {
 /// Calls f(Contact) for every pair with overlap >= 0.
 template <class F>
 void for_each_contact(const Pairs& pairs, const Grains& grains, const Box& box, F&& f) {
-  const auto visit = [&](std::uint32_t i, std::uint32_t j, const Quad& shift) {
+  const auto visit = [&](const PairList& list, std::size_t p, const Quad& shift) {
+    const auto [i, j] = list.pairs[p];
     const Quad &a = grains.place[i], &b = grains.place[j];
     const Vec3 d{a.x - b.x - shift.x, a.y - b.y - shift.y, a.z - b.z - shift.z};
-    const double reach = a.w + b.w, squared = dot(d, d);
-    if (squared > reach * reach) return;
-    const double distance = std::sqrt(squared);
-    f(Contact{i, j, d, distance, reach - distance});
+    const double distance = norm(d);
+    if (distance <= list.reach[p]) f(Contact{i, j, d, distance, list.reach[p] - distance});
   };
   const std::array<Quad, 27> shifts = box.shifts();
-  for (std::uint32_t i = 0; i + 1 < pairs.begin.size(); ++i)
-    for (std::uint32_t p = pairs.begin[i]; p < pairs.begin[i + 1]; ++p)
-      visit(i, pairs.partner[p], shifts[Box::home_image]);
-  for (const auto& [i, j, image] : pairs.crossing) visit(i, j, shifts[image]);
+  for (std::size_t p = 0; p < pairs.within.count; ++p) visit(pairs.within, p, shifts[Box::home_image]);
+  for (std::size_t p = 0; p < pairs.crossing.count; ++p)
+    visit(pairs.crossing, p, shifts[pairs.crossing.image[p]]);
 }
 
 }  // namespace grainlaw::dem

@@ -14,8 +14,8 @@ namespace grainlaw::dem {
 
 namespace {
 
-constexpr double swelling =
-    1.02;  // grains are pushed apart as if so much larger, or they would only ever nearly part
+// Grains are pushed apart as if so much larger, or they would only ever nearly part.
+constexpr double swelling = 1.02;
 constexpr double push_share = 0.4;  // of each overlap, by which either grain gives way
 constexpr int most_pushes = 20000;
 

@@ -13,8 +13,8 @@ namespace grainlaw::dem {
 /// the last bit.
 State random_gas(const Material& material, const NewPacking& packing);
 
-/// Moves grains apart, starting from any places, until no two overlap: each step halves the overlaps, of
-/// grains 2 % larger than they are. Velocities stay. Throws Error if it cannot be done within some thousand
+/// Moves grains apart, starting from any places, until no two overlap: a step takes four fifths off the
+/// overlap of a pair by itself, of grains 2 % larger than they are. Velocities stay. Throws Error if it cannot be done within some thousand
 /// steps.
 void push_apart(State& state);
 

@@ -77,9 +77,10 @@ TEST_F(ElementTest, RecordOfAllModes) {
   }
   // uniaxial decompression by ln(0.72/0.75) takes eps_dev back by as much, and z with it
   EXPECT_NEAR(r["eps_dev"][31], 0.05 + std::log(0.72 / 0.75), 1e-12);
-  // jammed at 0.75: the pressure and contacts of the thesis, within the scatter of 100 grains and a fast run
-  EXPECT_NEAR(r["P"][11], 0.049, 0.004);
-  EXPECT_NEAR(r["C"][11], 8.4, 0.4);
+  // Jammed at 0.75. Over 24 seeds of 100 grains, loaded as fast: P = 0.0509, standard deviation 0.0018; C = 8.38,
+  // 0.12. The same packing is another sample on another instruction set, so four standard deviations are allowed.
+  EXPECT_NEAR(r["P"][11], 0.0509, 4 * 0.0018);
+  EXPECT_NEAR(r["C"][11], 8.38, 4 * 0.12);
   EXPECT_LT(r["Ek_over_Ep"][11], 1e-5);
   // D2 compresses y and extends x
   EXPECT_GT(r["syy"][21], r["sxx"][21]);
