@@ -101,12 +101,14 @@ std::string fit_remarks(const Json& fits) {
     const char* verdict = holds == true ? "holds" : holds == false ? "FAILS" : "open ";
     text += fmt::format("{}  {} ({})\n", verdict, text_of(check, "name"), text_of(check, "value"));
   }
-  const Json missing = list_of(fits, "not_determined");
-  for (std::size_t i = 0; i < std::min(missing.size(), most_remarks); ++i)
-    text += fmt::format("not determined: {} of {}: {}\n", text_of(missing[i], "parameter"),
-                        text_of(missing[i], "fit"), text_of(missing[i], "reason"));
-  if (missing.size() > most_remarks)
-    text += fmt::format("not determined: {} more, see the report\n", missing.size() - most_remarks);
+  std::size_t missing = 0;
+  for (const Json& one : list_of(fits, "not_determined")) {
+    if (text_of(one, "role") == "predict" || ++missing > most_remarks) continue;
+    text += fmt::format("not determined: {} of {}: {}\n", text_of(one, "parameter"), text_of(one, "fit"),
+                        text_of(one, "reason"));
+  }
+  if (missing > most_remarks)
+    text += fmt::format("not determined: {} more, see the report\n", missing - most_remarks);
   return text;
 }
 

@@ -18,15 +18,12 @@ inline double sphere_volume(double r) { return 4.0 / 3.0 * std::numbers::pi * r 
 class Box {
  public:
   Box() = default;
-  explicit Box(const Vec3& length) : length_(length) {}
+  /// Edges, mm; d(ln L)/dt per axis, 1/us, positive in extension.
+  explicit Box(const Vec3& length, const Vec3& rate = {}) : length_(length), rate_(rate) {}
 
   const Vec3& length() const { return length_; }  ///< mm
   /// d(ln L)/dt per axis, 1/us, positive in extension: the velocity gradient.
   const Vec3& rate() const { return rate_; }
-  void set(const Vec3& length, const Vec3& rate) {
-    length_ = length;
-    rate_ = rate;
-  }
 
   double volume() const { return length_[0] * length_[1] * length_[2]; }
   double shortest() const { return std::min({length_[0], length_[1], length_[2]}); }

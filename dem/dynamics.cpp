@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "grainlaw/dem/advance.hpp"
 #include "grainlaw/dem/forces.hpp"
 #include "grainlaw/element/error.hpp"
 
@@ -35,8 +36,9 @@ Dynamics::Dynamics(const Material& material, const State& state)
 void Dynamics::start(double dt, const Vec3& rate) {
   grains_.motion = velocities();
   dt_ = dt;
-  box_.set(box_.length(), rate);
-  update_forces();
+  box_ = Box(box_.length(), rate);
+  if (neighbours_.outdated(grains_, box_)) neighbours_.update(grains_, box_, planned_steps * dt_);
+  contact_forces(law_, neighbours_.pairs(), box_, grains_);
   for (std::size_t i = 0; i < count(); ++i) {
     const Quad now = acceleration(i), &v = grains_.motion[i];
     grains_.half[i] = {v.x - 0.5 * dt * now.x, v.y - 0.5 * dt * now.y, v.z - 0.5 * dt * now.z, 0};
@@ -45,47 +47,19 @@ void Dynamics::start(double dt, const Vec3& rate) {
 }
 
 void Dynamics::step(const Vec3& length, const Vec3& rate) {
-  move(length);
-  box_.set(length, rate);
-  update_forces();
+  const Box next(length, rate);
+  const double excess = advance({dt_, next.stretch_from(box_.length()), box_.rate(), material_.gamma_b},
+                                neighbours_.reach(next), grains_);
+  box_ = next;
+  if (neighbours_.outdated(box_, excess)) neighbours_.update(grains_, box_, planned_steps * dt_);
+  contact_forces(law_, neighbours_.pairs(), box_, grains_);
   time_ += dt_;
   ++steps_;
 }
 
 Quad Dynamics::acceleration(std::size_t i) const {
-  const Quad &f = grains_.force[i], &v = grains_.motion[i];
-  const double inverse_mass = grains_.acceleration[i].w, drag = material_.gamma_b * inverse_mass;
-  const Vec3& rate = box_.rate();
-  return {f.x * inverse_mass - (drag + rate[0]) * v.x, f.y * inverse_mass - (drag + rate[1]) * v.y,
-          f.z * inverse_mass - (drag + rate[2]) * v.z, inverse_mass};
-}
-
-/// From the forces at time n: takes the velocity from n - 1/2 to n + 1/2, moves the grains with it and with
-/// the box, and predicts the velocity at n + 1.
-void Dynamics::move(const Vec3& length) {
-  const Vec3 stretch = {length[0] / box_.length()[0], length[1] / box_.length()[1],
-                        length[2] / box_.length()[2]};
-  // The fluctuation of a step is carried along by half of its deformation.
-  const Vec3 path = {dt_ * std::sqrt(stretch[0]), dt_ * std::sqrt(stretch[1]), dt_ * std::sqrt(stretch[2])};
-  const double half = 0.5 * dt_;
-  for (std::size_t i = 0; i < count(); ++i) {
-    const Quad now = acceleration(i);
-    Quad &x = grains_.place[i], &v = grains_.half[i], &before = grains_.acceleration[i];
-    v.x += dt_ * now.x;
-    v.y += dt_ * now.y;
-    v.z += dt_ * now.z;
-    x.x = stretch[0] * x.x + path[0] * v.x;
-    x.y = stretch[1] * x.y + path[1] * v.y;
-    x.z = stretch[2] * x.z + path[2] * v.z;
-    grains_.motion[i] = {v.x + dt_ * now.x - half * before.x, v.y + dt_ * now.y - half * before.y,
-                         v.z + dt_ * now.z - half * before.z, 0};
-    before = now;
-  }
-}
-
-void Dynamics::update_forces() {
-  if (neighbours_.outdated(grains_, box_)) neighbours_.update(grains_, box_, planned_steps * dt_);
-  contact_forces(law_, neighbours_.pairs(), box_, grains_);
+  return dem::acceleration(grains_.force[i], grains_.motion[i], grains_.acceleration[i], material_.gamma_b,
+                           box_.rate());
 }
 
 std::vector<Quad> Dynamics::velocities() const {

@@ -57,8 +57,6 @@ class Dynamics {
   State state() const;
 
  private:
-  void move(const Vec3& length);
-  void update_forces();
   /// dv/dt of grain i, from its force and the velocity the force was computed with.
   Quad acceleration(std::size_t i) const;
 

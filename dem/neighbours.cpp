@@ -32,11 +32,14 @@ double strayed(const Quad& x, const Quad& reference, const Vec3& stretch) {
 bool Neighbours::outdated(const Grains& grains, const Box& box) const {
   if (inner_reference_.size() != grains.count()) return true;
   const Vec3 stretch = box.stretch_from(inner_length_);
-  if (shrink(stretch) < 1 - box_budget) return true;
   double excess = -1;
   for (std::size_t i = 0; i < grains.count(); ++i)
     excess = std::max(excess, strayed(grains.place[i], inner_reference_[i], stretch) - inner_reference_[i].w);
-  return excess > 0;
+  return outdated(box, excess);
+}
+
+bool Neighbours::outdated(const Box& box, double excess) const {
+  return excess > 0 || shrink(box.stretch_from(inner_length_)) < 1 - box_budget;
 }
 
 void Neighbours::update(Grains& grains, const Box& box, double lookahead) {

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "grainlaw/dem/advance.hpp"
 #include "grainlaw/dem/box.hpp"
 #include "grainlaw/dem/cells.hpp"
 #include "grainlaw/dem/grains.hpp"
@@ -26,6 +27,9 @@ class Neighbours {
 
   /// True when a pair missing in the list might touch.
   bool outdated(const Grains& grains, const Box& box) const;
+  /// The same, where `excess` is what advance() returned for reach(box).
+  bool outdated(const Box& box, double excess) const;
+  ListReach reach(const Box& box) const { return {inner_reference_.data(), box.stretch_from(inner_length_)}; }
 
   /// Renews the list; wraps and sorts the grains where the outer list must be renewed too. A grain may go
   /// `lookahead` us at its speed before the next call. Throws Error if the box is too narrow for a grain not

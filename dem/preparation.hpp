@@ -14,8 +14,8 @@ namespace grainlaw::dem {
 State random_gas(const Material& material, const NewPacking& packing);
 
 /// Moves grains apart, starting from any places, until no two overlap: a step takes four fifths off the
-/// overlap of a pair by itself, of grains 2 % larger than they are. Velocities stay. Throws Error if it cannot be done within some thousand
-/// steps.
+/// overlap of a pair by itself, of grains 2 % larger than they are. Velocities stay. Throws Error if it
+/// cannot be done within some thousand steps.
 void push_apart(State& state);
 
 /// The two legs that follow the gas: isotropic compression to packing.nu along a half cosine, and relaxation.

@@ -1,5 +1,6 @@
-// Which instruction sets the kernels are compiled for, before Highway's headers. Three are enough: those in between
-// have no vectors of four doubles, or nothing that the kernels use.
+// Which instruction sets the kernels are compiled for; to be included before Highway's headers. Those between
+// the baseline and AVX2 have no vectors of four doubles, and AVX3_DL has nothing over AVX3 that the kernels
+// use.
 #pragma once
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)

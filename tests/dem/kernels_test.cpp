@@ -1,0 +1,120 @@
+// The vector kernels on every instruction set that this machine has, against the same sums done one by one.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+
+#include "grainlaw/dem/advance.hpp"
+#include "grainlaw/dem/forces.hpp"
+#include "packings.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+/// Every target that the kernels may run on here, forced in its turn.
+class EachTarget : public testing::TestWithParam<std::int64_t> {
+ protected:
+  void SetUp() override { force(GetParam()); }
+  void TearDown() override { force(0); }
+  static void force(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
+};
+
+std::vector<std::int64_t> targets_here() {
+  std::vector<std::int64_t> list{HWY_SCALAR};
+  for (const std::int64_t target : {HWY_AVX2, HWY_AVX3})
+    if ((hwy::SupportedTargets() & target) != 0) list.push_back(target);
+  return list;
+}
+
+/// A jammed heap of grains in a box that deforms, with a list of pairs; 61 grains: no multiple of four.
+struct Heap {
+  Material material;
+  Grains grains;
+  Box box;
+  Neighbours neighbours;
+
+  Heap() : Heap(test::squeezed(Material{}, 61, 4, 0.8, 0.3)) {}
+  explicit Heap(const State& state)
+      : grains(state, material.rho),
+        box(state.box, {1e-3, -2e-3, 5e-4}),
+        neighbours(1, grains.largest_radius()) {
+    neighbours.update(grains, box, 1);
+  }
+};
+
+TEST_P(EachTarget, ContactForcesAreEquation2_1) {
+  Heap heap;
+  const LinearContact law = LinearContact::of(heap.material);
+  contact_forces(law, heap.neighbours.pairs(), heap.box, heap.grains);
+  std::vector<Vec3> expected(heap.grains.count(), Vec3{});
+  int contacts = 0;
+  const auto add_images = [&](std::uint32_t i, std::uint32_t j) {
+    const Quad &a = heap.grains.place[i], &b = heap.grains.place[j];
+    for (const Quad& shift : heap.box.shifts()) {
+      const Vec3 l{a.x - b.x - shift.x, a.y - b.y - shift.y, a.z - b.z - shift.z};
+      const double distance = norm(l), overlap = a.w + b.w - distance;
+      if (overlap < 0) continue;
+      ++contacts;
+      const Quad &va = heap.grains.motion[i], &vb = heap.grains.motion[j];
+      const Vec3 flow = heap.box.affine_velocity(l);
+      const double closing =
+          -dot(l, {va.x - vb.x + flow[0], va.y - vb.y + flow[1], va.z - vb.z + flow[2]}) / distance;
+      const double f = heap.material.k * overlap + heap.material.gamma * closing;
+      for (std::size_t c = 0; c < 3; ++c) {
+        expected[i][c] += f * l[c] / distance;
+        expected[j][c] -= f * l[c] / distance;
+      }
+    }
+  };
+  for (std::uint32_t i = 0; i < heap.grains.count(); ++i)
+    for (std::uint32_t j = i + 1; j < heap.grains.count(); ++j) add_images(i, j);
+  EXPECT_GT(contacts, 150);
+  for (std::size_t i = 0; i < heap.grains.count(); ++i) {
+    const Quad& f = heap.grains.force[i];
+    EXPECT_NEAR(f.x, expected[i][0], 1e-9);  // forces are of order 1e4
+    EXPECT_NEAR(f.y, expected[i][1], 1e-9);
+    EXPECT_NEAR(f.z, expected[i][2], 1e-9);
+  }
+}
+
+TEST_P(EachTarget, AdvanceIsOneStepOfVerlet) {
+  Heap heap;
+  contact_forces(LinearContact::of(heap.material), heap.neighbours.pairs(), heap.box, heap.grains);
+  const Grains before = heap.grains;
+  const double dt = 1e-3, gamma_b = 100;
+  const Vec3 length{heap.box.length()[0] * 1.01, heap.box.length()[1] * 0.99, heap.box.length()[2]};
+  const Box next(length);
+  const Vec3 stretch = next.stretch_from(heap.box.length()), rate = heap.box.rate();
+  const ListReach list = heap.neighbours.reach(next);
+  const double excess = advance({dt, stretch, rate, gamma_b}, list, heap.grains);
+  double expected_excess = -1;
+  for (std::size_t i = 0; i < before.count(); ++i) {
+    const auto three = [](const Quad& q) { return Vec3{q.x, q.y, q.z}; };
+    const Vec3 a =
+        three(acceleration(before.force[i], before.motion[i], before.acceleration[i], gamma_b, rate));
+    const Vec3 last = three(before.acceleration[i]), v = three(before.half[i]), x = three(before.place[i]);
+    const Vec3 is_x = three(heap.grains.place[i]), is_v = three(heap.grains.half[i]);
+    const Vec3 is_seen = three(heap.grains.motion[i]), is_a = three(heap.grains.acceleration[i]);
+    double strayed = 0;
+    const Vec3 reference = three(list.reference[i]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(is_a[c], a[c], 1e-12 * (1 + std::abs(a[c])));
+      EXPECT_NEAR(is_v[c], v[c] + dt * a[c], 1e-13);
+      EXPECT_NEAR(is_x[c], stretch[c] * x[c] + std::sqrt(stretch[c]) * dt * is_v[c], 1e-13);
+      EXPECT_NEAR(is_seen[c], is_v[c] + dt * (a[c] - 0.5 * last[c]), 1e-13);
+      strayed += std::pow(is_x[c] - list.stretch[c] * reference[c], 2);
+    }
+    expected_excess = std::max(expected_excess, strayed - list.reference[i].w);
+    EXPECT_EQ(heap.grains.place[i].w, before.place[i].w);                // radius
+    EXPECT_EQ(heap.grains.acceleration[i].w, before.acceleration[i].w);  // 1/mass
+    EXPECT_EQ(heap.grains.half[i].w, 0);
+    EXPECT_EQ(heap.grains.motion[i].w, 0);
+  }
+  EXPECT_NEAR(excess, expected_excess, 1e-13);
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, EachTarget, testing::ValuesIn(targets_here()),
+                         [](const auto& instance) { return std::string(hwy::TargetName(instance.param)); });
+
+}  // namespace
+}  // namespace grainlaw::dem
