@@ -26,7 +26,7 @@ double advance_grains(const Stride& stride, const ListReach& list, Grains& grain
   const Four stretch = first_three(stride.stretch, 1), carry = first_three(path, 0);
   const Four rate = first_three(stride.rate, 0), damping = all(stride.gamma_b);
   const Four since_list = first_three(list.stretch, 0), zero = all(0);
-  Four excess = all(-1);
+  Four excess = all(-1), places = all(0);
   for (std::size_t i = 0; i < grains.count(); ++i) {
     const Four before = load(grains.acceleration[i]), inverse_mass = spread_last(before);
     const Four seen = load(grains.motion[i]);
@@ -34,6 +34,7 @@ double advance_grains(const Stride& stride, const ListReach& list, Grains& grain
         mul_sub_from(mul_add(damping, inverse_mass, rate), seen, load(grains.force[i]) * inverse_mass);
     const Four v = mul_add(step, now, load(grains.half[i]));
     const Four x = mul_add(carry, v, stretch * load(grains.place[i]));
+    places = places + x;
     store(v, grains.half[i]);
     store(x, grains.place[i]);
     store(mul_sub_from(half_step, before, mul_add(step, now, v)), grains.motion[i]);
@@ -41,8 +42,9 @@ double advance_grains(const Stride& stride, const ListReach& list, Grains& grain
     const Four reference = load(list.reference[i]), strayed = mul_sub_from(since_list, reference, x);
     excess = larger(excess, sum(with_last(strayed * strayed, zero - reference)));
   }
+  // Max drops what is not a number; a sum keeps it.
   alignas(32) double result[4];
-  store(excess, result);
+  store(mul_add(zero, sum(places), excess), result);
   return result[0];
 }
 

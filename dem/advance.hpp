@@ -29,7 +29,8 @@ struct ListReach {
 };
 
 /// From the forces at time n: takes the velocity from n - 1/2 to n + 1/2, moves the grains with it and with
-/// the box, and predicts the velocity at n + 1. Returns the largest |x - E X|^2 - s^2 of a grain, mm^2.
+/// the box, and predicts the velocity at n + 1. Returns the largest |x - E X|^2 - s^2 of a grain, mm^2;
+/// not a number if the place of any grain is not finite.
 double advance(const Stride& stride, const ListReach& list, Grains& grains);
 
 }  // namespace grainlaw::dem

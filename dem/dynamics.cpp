@@ -50,6 +50,9 @@ void Dynamics::step(const Vec3& length, const Vec3& rate) {
   const Box next(length, rate);
   const double excess = advance({dt_, next.stretch_from(box_.length()), box_.rate(), material_.gamma_b},
                                 neighbours_.reach(next), grains_);
+  if (!std::isfinite(excess))
+    throw Error("the motion of the grains became unstable " + to_text(time_) +
+                " us after its start; measure.time_step (or time_step_gas) must be smaller");
   box_ = next;
   if (neighbours_.outdated(box_, excess)) neighbours_.update(grains_, box_, planned_steps * dt_);
   contact_forces(law_, neighbours_.pairs(), box_, grains_);

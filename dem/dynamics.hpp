@@ -36,7 +36,8 @@ class Dynamics {
 
   /// Must precede the first step, and steps with another dt (us). `rate` is d(ln L)/dt from now on.
   void start(double dt, const Vec3& rate);
-  /// One step to a box of edges `length` (mm), which then deforms at `rate` (1/us).
+  /// One step to a box of edges `length` (mm), which then deforms at `rate` (1/us). Throws Error if the
+  /// motion is no longer finite.
   void step(const Vec3& length, const Vec3& rate);
   /// One step in a box at rest.
   void step() { step(box_.length(), {}); }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <ctime>
 
+#include "grainlaw/dem/simd.hpp"
 #include "grainlaw/element/version.hpp"
 
 namespace grainlaw::dem {
@@ -16,26 +17,6 @@ std::string compiler_name() {
          std::to_string(__GNUC_PATCHLEVEL__);
 #else
   return "unknown";
-#endif
-}
-
-std::string simd_name() {
-#if defined(__AVX512F__)
-  return "avx512";
-#elif defined(__AVX2__) && defined(__FMA__)
-  return "avx2+fma";
-#elif defined(__AVX2__)
-  return "avx2";
-#elif defined(__AVX__)
-  return "avx";
-#elif defined(__SSE4_2__)
-  return "sse4.2";
-#elif defined(__SSE2__)
-  return "sse2";
-#elif defined(__ARM_NEON)
-  return "neon";
-#else
-  return "scalar";
 #endif
 }
 
@@ -54,7 +35,7 @@ Provenance Provenance::begin(const Scene& scene) {
   provenance.commit = grainlaw::commit();
   if (const auto* packing = std::get_if<NewPacking>(&scene.preparation)) provenance.seed = packing->seed;
   provenance.compiler = compiler_name();
-  provenance.simd = simd_name();
+  provenance.simd = simd_target();
   provenance.started = utc_now();
   provenance.k_star = scene.material.stress_unit();
   provenance.k_star_kPa = scene.material.stress_unit_kPa();

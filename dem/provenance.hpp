@@ -15,7 +15,7 @@ struct Provenance {
   std::string version, commit;        ///< of grainlaw
   std::optional<std::uint64_t> seed;  ///< of a new packing; none (null) where the test starts from a snapshot
   std::string compiler;               ///< name and version
-  std::string simd;                   ///< widest instruction set that this binary was built for
+  std::string simd;                   ///< instruction set of the kernels, see simd_target()
   std::string started;                ///< UTC, ISO 8601: 2024-05-31T12:34:56Z
   double wall_time_s = 0;
   std::uint64_t particle_steps = 0;  ///< number of grains times time steps, preparation included
@@ -33,8 +33,6 @@ struct Provenance {
 
 /// "gcc 12.2.0", "clang 16.0.6", ...
 std::string compiler_name();
-/// "avx512", "avx2+fma", "avx2", "avx", "sse4.2", "sse2", "neon", "scalar".
-std::string simd_name();
 /// Now in UTC, to the second.
 std::string utc_now();
 

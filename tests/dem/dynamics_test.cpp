@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "grainlaw/element/error.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {
@@ -199,6 +201,15 @@ TEST(Dynamics, ObserversDoNotChangeTheRun) {
     return dynamics.state();
   };
   EXPECT_EQ(run(true), run(false));
+}
+
+TEST(Dynamics, AMotionThatIsNotFiniteEndsTheRun) {
+  const Material m;
+  State start = test::squeezed(m, 50, 7, 0.7);
+  start.velocity[20][1] = std::numeric_limits<double>::infinity();
+  Dynamics dynamics(m, start);
+  dynamics.start(0.02, {});
+  EXPECT_THROW(dynamics.step(), Error);
 }
 
 TEST(Dynamics, StateReturnsInTheOrderItCame) {
