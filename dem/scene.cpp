@@ -15,6 +15,7 @@ constexpr std::int64_t fewest_grains = 8, most_grains = 10'000'000;
 constexpr std::int64_t largest_seed = std::int64_t{1} << 53;  ///< JSON readers keep whole numbers up to here
 constexpr std::int64_t most_frames = 1'000'000'000;
 constexpr std::int64_t most_rows = 100'000, most_segments = 1'000'000;
+constexpr double fastest = 1e6;       // mm/us, 1/us: far beyond sense, so that nothing overflows
 constexpr double densest_gas = 0.45;  ///< random placement without overlap slows down without limit beyond
 constexpr double largest_step = 0.2;  ///< of the smallest contact duration
 constexpr double radius_slack =
@@ -126,9 +127,9 @@ NewPacking NewPacking::read(Reader reader, SeedKey seed_key) {
   else if (reader.has("seed"))
     reader.fail("seed", "must be left out: the campaign's seeds are used");
   packing.nu_gas = reader.number("nu_gas", above_up_to(0, densest_gas), packing.nu_gas);
-  packing.speed = reader.number("speed", above(0), packing.speed);
+  packing.speed = reader.number("speed", above_up_to(0, fastest), packing.speed);
   packing.nu = reader.number("nu", inside(packing.nu_gas, 1), packing.nu);
-  packing.rate = reader.number("rate", above(0), packing.rate);
+  packing.rate = reader.number("rate", above_up_to(0, fastest), packing.rate);
   packing.relax = read_relaxation(reader.object_or_empty("relax"));
   reader.finish();
   return packing;
@@ -266,6 +267,13 @@ void Scene::check_grains(const State& state) const {
                 "must be that of the grains in " + from->file.string() + ", whose radii deviate by " +
                     short_text(spread) + " mm from their mean; got " + to_text(material.w) +
                     ", with which they would by " + short_text(wanted_spread) + " mm");
+}
+
+std::size_t Scene::record_rows() const {
+  std::size_t rows = 1;
+  for (const Segment& segment : path.segments)
+    rows += segment.mode == Mode::relax ? 1 : static_cast<std::size_t>(measure.rows);
+  return rows;
 }
 
 std::vector<Leg> Scene::legs(double nu) const {

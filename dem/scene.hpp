@@ -86,6 +86,8 @@ struct Scene {
   /// The scene with every default filled in, to be written into `dir` (see FromSnapshot::to_json).
   Json to_json(const std::filesystem::path& dir = {}) const;
 
+  /// Rows of its record: one for the start, and those of each segment.
+  std::size_t record_rows() const;
   /// The volume fraction the path starts from, where the scene says it: a new packing's nu, or the nu that
   /// chooses a frame.
   std::optional<double> start_nu() const;

@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -28,18 +30,45 @@ int write_all(int descriptor, const std::string& text) {
 
 }  // namespace
 
-void write_file(const std::filesystem::path& file, const std::string& text) {
+namespace {
+
+/// Where a chain of symbolic links ends: the file to replace, not the link.
+std::filesystem::path end_of_links(std::filesystem::path file) {
+  std::error_code code;
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(file, code); ++links) {
+    const std::filesystem::path target = std::filesystem::read_symlink(file, code);
+    if (code) break;
+    file = file.parent_path() / target;
+  }
+  return file;
+}
+
+/// Opens, writes and closes; returns errno, 0 if well.
+int write_to(const std::filesystem::path& file, int flags, const std::string& text) {
+  const int descriptor = ::open(file.c_str(), flags | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor < 0) return errno;
+  const int failure = write_all(descriptor, text);
+  return ::close(descriptor) != 0 && failure == 0 ? errno : failure;
+}
+
+int replace(const std::filesystem::path& file, const std::string& text) {
   std::filesystem::path aside = file;
   aside += ".part" + std::to_string(::getpid());
-  const int descriptor = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) throw Error::cannot_write(file.string(), std::strerror(errno));
-  int failure = write_all(descriptor, text);
-  if (::close(descriptor) != 0 && failure == 0) failure = errno;
+  int failure = write_to(aside, O_CREAT | O_TRUNC, text);
   if (failure == 0 && ::rename(aside.c_str(), file.c_str()) != 0) failure = errno;
-  if (failure != 0) {
-    ::unlink(aside.c_str());
-    throw Error::cannot_write(file.string(), std::strerror(failure));
-  }
+  if (failure != 0) ::unlink(aside.c_str());
+  return failure;
+}
+
+}  // namespace
+
+void write_file(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path end = end_of_links(file);
+  std::error_code code;
+  const bool device = std::filesystem::exists(end, code) && !std::filesystem::is_regular_file(end, code) &&
+                      !std::filesystem::is_directory(end, code);
+  const int failure = device ? write_to(end, 0, text) : replace(end, text);
+  if (failure != 0) throw Error::cannot_write(file.string(), std::strerror(failure));
 }
 
 std::string read_file(const std::filesystem::path& file) {
@@ -52,6 +81,14 @@ std::string read_file(const std::filesystem::path& file) {
   if (!stream.eof() && stream.fail())
     throw Error(file.string(), "", std::string("cannot be read: ") + std::strerror(errno));
   return text.str();
+}
+
+std::string digest(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+  for (const unsigned char c : text) hash = (hash ^ c) * 0x100000001b3u;
+  char hex[17];
+  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(hash));
+  return hex;
 }
 
 }  // namespace grainlaw

@@ -6,9 +6,12 @@
 
 namespace grainlaw {
 
-/// Writes `text` to a temporary file beside `file`, flushes it to disk and renames it. Throws Error ("disk
-/// full" in words).
+/// Writes `text` to a temporary file beside `file`, flushes it to disk and renames it. Where `file` is a
+/// symbolic link, what it points to is replaced; a device or a pipe is written to. Throws Error ("disk full"
+/// in words).
 void write_file(const std::filesystem::path& file, const std::string& text);
 std::string read_file(const std::filesystem::path& file);
+/// 64 bits as hexadecimal digits, to see whether a text is still the same; no protection against forgery.
+std::string digest(const std::string& text);
 
 }  // namespace grainlaw

@@ -8,6 +8,16 @@
 
 namespace grainlaw {
 
+namespace {
+// So wide that no product of them overflows.
+const Range positive = between(1e-15, 1e15), not_negative = between(0, 1e15);
+}  // namespace
+
+double Material::damping_scale() const {
+  const Material thesis;
+  return std::sqrt(k / thesis.k * rho / thesis.rho * std::pow(r_mean / thesis.r_mean, 3));
+}
+
 double Material::contact_duration(double r) const {
   const double reduced_mass = 0.5 * rho * 4.0 / 3.0 * std::numbers::pi * r * r * r;
   const double damping = gamma / (2 * reduced_mass);
@@ -19,11 +29,12 @@ double Material::contact_duration(double r) const {
 Material Material::read(Reader reader) {
   Material m;
   m.w = reader.number("w", between(1, 100), m.w);
-  m.k = reader.number("k", above(0), m.k);
-  m.r_mean = reader.number("r_mean", above(0), m.r_mean);
-  m.rho = reader.number("rho", above(0), m.rho);
-  m.gamma = reader.number("gamma", at_least(0), m.gamma);
-  m.gamma_b = reader.number("gamma_b", at_least(0), m.gamma_b);
+  m.k = reader.number("k", positive, m.k);
+  m.r_mean = reader.number("r_mean", positive, m.r_mean);
+  m.rho = reader.number("rho", positive, m.rho);
+  const double likeness = m.damping_scale();
+  m.gamma = reader.number("gamma", not_negative, m.gamma * likeness);
+  m.gamma_b = reader.number("gamma_b", not_negative, m.gamma_b * likeness);
   reader.finish();
   if (!std::isfinite(m.contact_duration(m.r_min())))
     reader.fail("gamma",

@@ -14,6 +14,10 @@ constexpr std::size_t most_segments = 1'000'000;
 constexpr double default_rate = 2.839e-5;      // 28.39 /s, the thesis's D2 (section 4.3)
 constexpr double default_rate_iso = 5.0e-6;    // 5 /s, near the thesis's slow isotropic cycle (Fig. 2.2)
 constexpr double longest_relaxation = 2000.0;  // us, 24 background relaxation times
+constexpr double largest_stress =
+    1000;  // over k*, and of fabric: far beyond any law, so that nothing overflows
+const Range any_strain = between(-100, 100), any_rate = above_up_to(0, 1e6),
+            any_duration = above_up_to(0, 1e15);
 constexpr Strain3 axis_d2{-1, 1, 0};
 constexpr Strain3 axis_uni{-0.5, -0.5, 1};
 
@@ -59,8 +63,8 @@ const std::vector<std::string>& controls_of(Mode mode) {
 /// Reads `controls`: exactly one target, and one that the mode moves.
 void read_controls(Reader reader, Segment& segment) {
   segment.to_nu = reader.maybe_number("nu", inside(0, 1));
-  segment.to_eps_vol = reader.maybe_number("eps_vol", any_number());
-  segment.to_eps_dev = reader.maybe_number("eps_dev", any_number());
+  segment.to_eps_vol = reader.maybe_number("eps_vol", any_strain);
+  segment.to_eps_dev = reader.maybe_number("eps_dev", any_strain);
   reader.finish();
   const std::string mode = name_of(segment.mode);
   const auto& moved = controls_of(segment.mode);
@@ -76,11 +80,11 @@ void read_controls(Reader reader, Segment& segment) {
 
 void read_relax(Reader& reader, Segment& segment) {
   segment.tolerance = reader.number("tolerance", inside(0, 1), 1e-6);
-  segment.duration = reader.number("duration", above(0), longest_relaxation);
+  segment.duration = reader.number("duration", any_duration, longest_relaxation);
 }
 
 void read_strain(Reader& reader, Segment& segment) {
-  const auto strain = reader.numbers("strain", any_number(), 3);
+  const auto strain = reader.numbers("strain", any_strain, 3);
   if (strain.size() != 3)
     reader.fail("strain", "must be three numbers [xx, yy, zz], got " + std::to_string(strain.size()) +
                               " (the box is orthorhombic, shear components cannot be prescribed)");
@@ -93,7 +97,7 @@ void read_amount(Reader& reader, Segment& segment) {
     reader.fail("", reader.has("amount") ? "redundant: controls and amount both say how far; give one"
                                          : "must give either controls or amount");
   if (reader.has("controls")) read_controls(reader.object("controls"), segment);
-  segment.amount = reader.maybe_number("amount", any_number());
+  segment.amount = reader.maybe_number("amount", any_strain);
   if (segment.amount && *segment.amount == 0) reader.fail("amount", "must not be 0");
 }
 
@@ -116,8 +120,8 @@ Segment read_segment(Reader& reader, std::int64_t& repeat) {
   repeat = reader.integer("repeat", 1, static_cast<std::int64_t>(most_segments), 1);
   if (repeat > 1 && reader.has("controls"))
     reader.fail("repeat", "needs amount: a target is already reached the second time, got controls");
-  segment.rate = reader.maybe_number("rate", above(0));
-  segment.duration = reader.maybe_number("duration", above(0));
+  segment.rate = reader.maybe_number("rate", any_rate);
+  segment.duration = reader.maybe_number("duration", any_duration);
   if (segment.rate && segment.duration)
     reader.fail("duration", "redundant: rate and duration both say how fast; give one");
   if (!segment.rate && !segment.duration)
@@ -257,9 +261,9 @@ Path Path::read(Reader reader) {
   path.file = reader.file();
   Reader start = reader.object_or_empty("start");
   path.start.nu = start.maybe_number("nu", inside(0, 1));
-  path.start.P = start.maybe_number("P", at_least(0));
-  path.start.sigma_dev = start.maybe_number("sigma_dev", any_number());
-  path.start.F_dev = start.maybe_number("F_dev", any_number());
+  path.start.P = start.maybe_number("P", between(0, largest_stress));
+  path.start.sigma_dev = start.maybe_number("sigma_dev", between(-largest_stress, largest_stress));
+  path.start.F_dev = start.maybe_number("F_dev", between(-largest_stress, largest_stress));
   path.start.phi_J = start.maybe_number("phi_J", inside(0, 1));
   path.start.phi_max = start.maybe_number("phi_max", inside(0, 1));
   start.finish();

@@ -7,6 +7,7 @@
 
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
+#include "grainlaw/element/json.hpp"
 
 namespace grainlaw {
 
@@ -20,6 +21,29 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
     if (at == std::string_view::npos) return parts;
     line.remove_prefix(at + 1);
   }
+}
+
+struct ColumnRange {
+  std::string_view column;
+  Range range;
+};
+
+/// What no packing and no law can exceed. The pressure of a gas may be slightly negative: contacts pull
+/// before parting.
+const std::vector<ColumnRange>& column_ranges() {
+  static const std::vector<ColumnRange> ranges{
+      {"nu", inside(0, 1)},    {"P", between(-1e3, 1e3)}, {"sigma_dev", between(-1e3, 1e3)},
+      {"F_v", at_least(0)},    {"C", at_least(0)},        {"C_star", at_least(0)},
+      {"f_NR", between(0, 1)}, {"phi_J", inside(0, 1)},   {"Ek_over_Ep", at_least(0)}};
+  return ranges;
+}
+
+void check_range(double value, std::size_t line, const std::string& file, const std::string& column) {
+  if (std::isnan(value)) return;
+  for (const auto& [name, range] : column_ranges())
+    if (name == column && !range.contains(value))
+      throw Error(file, column,
+                  "line " + std::to_string(line) + ": must be " + range.text() + ", got " + to_text(value));
 }
 
 /// A field of a record: a finite number, or empty for an undefined value.
@@ -121,8 +145,10 @@ Record Record::read_csv(const std::filesystem::path& path, const std::vector<std
       throw Error(file, "",
                   "line " + std::to_string(line) + ": must have " + std::to_string(row.size()) +
                       " fields, got " + std::to_string(fields.size()));
-    for (std::size_t i = 0; i < row.size(); ++i)
+    for (std::size_t i = 0; i < row.size(); ++i) {
       row[i] = parse_field(fields[i], file, line, record.names_[i]);
+      check_range(row[i], line, file, record.names_[i]);
+    }
     record.append(row);
   }
   if (record.rows() == 0) throw Error(file, "", "has a header but no rows");

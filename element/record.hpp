@@ -29,7 +29,8 @@ class Record {
   void append(const std::vector<double>& row);
 
   /// Reads a CSV file. Throws Error (file, line, column) for nan, inf, text, a short or long line, a repeated
-  /// or missing column, an empty file. `required` lists columns that must be there.
+  /// or missing column, a value that none can have (nu outside (0, 1)), an empty file. `required` lists
+  /// columns that must be there.
   static Record read_csv(const std::filesystem::path& file, const std::vector<std::string>& required = {});
   /// Writes aside, then renames; throws Error when the disk is full. Infinite values are refused.
   void write_csv(const std::filesystem::path& file) const;

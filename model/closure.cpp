@@ -41,4 +41,13 @@ Laws laws_of(const ParameterSet& parameters, Form form) {
   return laws;
 }
 
+Laws with_jamming_density(Laws laws, double phi_J) {
+  const double factor = phi_J / laws.pressure.nu_c;
+  laws.pressure = with_jamming_density(laws.pressure, phi_J);
+  for (double* nu_c : {&laws.contacts.nu_c, &laws.moduli.nu_c, &laws.s_max.nu_c, &laws.beta_s.nu_c,
+                       &laws.F_max.nu_c, &laws.beta_F.nu_c})
+    *nu_c *= factor;
+  return laws;
+}
+
 }  // namespace grainlaw::model

@@ -33,4 +33,8 @@ struct Laws {
 /// the set lacks.
 Laws laws_of(const ParameterSet& parameters, Form form);
 
+/// The same laws for another history: phi_J in place of the nu_c of the pressure law, and every other nu_c in
+/// proportion (chapter 5: Eqs. 5.7 to 5.9, 5.12).
+Laws with_jamming_density(Laws laws, double phi_J);
+
 }  // namespace grainlaw::model

@@ -32,20 +32,31 @@ inline double jamming_density_after(const OverCompression& o, double phi_max, do
   return o.phi_SJ - (limit - o.phi_SJ) * std::expm1(-std::pow(M / o.mu, o.beta));
 }
 
-/// The phi_J for which the pressure law gives P* at nu: Eq. 2.14 with phi_J in every place of nu_c, inverted.
-/// nu itself for P* = 0; nothing where even ln(nu/phi_J) = 1 gives less.
-inline std::optional<double> jamming_density_from_pressure(const PressureCurve& law, double nu, double P) {
-  if (P <= 0) return nu;
-  const auto missing = [&](double e) {
-    return P - pressure(with_jamming_density(law, nu * std::exp(-e)), nu);
-  };
-  double low = 0, high = 1;
-  if (missing(high) > 0) return std::nullopt;
+/// Where `holds` turns from true to false between low and high.
+template <class Holds>
+double turning_point(double low, double high, Holds holds) {
   for (int i = 0; i < 80; ++i) {
     const double middle = 0.5 * (low + high);
-    (missing(middle) > 0 ? low : high) = middle;
+    (holds(middle) ? low : high) = middle;
   }
-  return nu * std::exp(-0.5 * (low + high));
+  return 0.5 * (low + high);
+}
+
+/// The range of e = ln(nu/phi_J) over which Eq. 2.14 is inverted, from 0 up: to where P* has its maximum (a
+/// gamma_p > 0 gives it one, beyond e = 1/(2 gamma_p)), at most to 1.
+inline double range_of_inversion(const PressureCurve& law) {
+  const auto rises = [&](double e) { return pressure_slope(law, law.nu_c * std::exp(e)) > 0; };
+  return rises(1) ? 1 : turning_point(0, 1, rises);
+}
+
+/// The phi_J for which the pressure law gives P* at nu, with_jamming_density() inverted. nu itself for P* =
+/// 0; nothing where P* is more than the law gives in range_of_inversion().
+inline std::optional<double> jamming_density_from_pressure(const PressureCurve& law, double nu, double P) {
+  if (P <= 0) return nu;
+  const auto too_little = [&](double e) { return pressure(law, law.nu_c * std::exp(e)) < P; };
+  const double range = range_of_inversion(law);
+  if (too_little(range)) return std::nullopt;
+  return nu * std::exp(-turning_point(0, range, too_little));
 }
 
 }  // namespace grainlaw::model

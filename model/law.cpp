@@ -125,9 +125,9 @@ std::optional<std::string> objection(const Law& law, const Stretch& stretch) {
 Contacts contacts_of(const Law& law, const State& state) {
   const Laws& laws = laws_of(law);
   if (!state.jammed) return {0, 0, undefined, 0};
-  if (state.nu < laws.contacts.nu_c) return {undefined, undefined, undefined, undefined};
-  return {isotropic_fabric(laws.contacts, laws.g3, state.nu), coordination(laws.contacts, state.nu),
-          corrected_coordination(laws.contacts, state.nu), 1 - rattlers(laws.contacts, state.nu)};
+  const double nu = at_least_isostatic(laws.contacts, state.nu), C = coordination(laws.contacts, nu);
+  return {laws.g3 * state.nu * C, C, corrected_coordination(laws.contacts, nu),
+          1 - rattlers(laws.contacts, nu)};
 }
 
 }  // namespace grainlaw::model

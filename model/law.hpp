@@ -118,8 +118,8 @@ void begin_direction(const Law& law, State& state, double q);
 /// anything.
 std::optional<std::string> objection(const Law& law, const Stretch& stretch);
 
-/// Isotropic contact quantities of a state. Unjammed: no contacts, C_star is NaN (undefined). All NaN where
-/// the point is jammed below the density at which the contact law begins.
+/// Isotropic contact quantities of a state. Unjammed: no contacts, C_star is NaN (undefined). Where the point
+/// is jammed below the density at which the contact law begins, C, C_star and f_NR are those of that density.
 struct Contacts {
   double F_v, C, C_star, f_NR;
 };

@@ -25,7 +25,7 @@ struct PressureCurve {
   ContactCurve contacts;  ///< C of the prefactor nu C / nu_c
   double p0 = 0;
   double gamma_p = 0;  ///< weak non-linearity; may be negative
-  double nu_c = 0.5;   ///< volume fraction where pressure begins
+  double nu_c = 0.5;   ///< volume fraction where pressure begins: phi_J
 };
 
 /// Eq. 2.11: C* = C0 + C1 (nu/nu_c - 1)^alpha, contacts per grain that has at least four.
@@ -63,6 +63,10 @@ inline double coordination_slope(const ContactCurve& c, double nu) {
          rattlers_slope(c, nu) * corrected_coordination(c, nu);
 }
 
+/// nu, but not below where contacts begin. A packing under pressure has at least the contacts of nu_c: with
+/// the rows of Table 2.1 pressure may begin before the contacts do (D2: 0.6581 before 0.6601).
+inline double at_least_isostatic(const ContactCurve& c, double nu) { return std::max(nu, c.nu_c); }
+
 /// F_v = tr F = g3 nu C (Eqs. 3.6, 4.6); 0 where nu < nu_c.
 inline double isotropic_fabric(const ContactCurve& c, double g3, double nu) {
   return g3 * nu * coordination(c, nu);
@@ -77,29 +81,30 @@ inline double strain_times_fabric_slope(const ContactCurve& c, double nu, double
               nu * rattlers_slope(c, nu) / (1 - phi));
 }
 
-/// The volume fraction at and below which Eq. 2.14 gives no pressure: nu_c, or where its contacts begin.
-inline double jamming_density(const PressureCurve& p) { return std::max(p.nu_c, p.contacts.nu_c); }
+/// The volume fraction at and below which Eq. 2.14 gives no pressure.
+inline double jamming_density(const PressureCurve& p) { return p.nu_c; }
 
 /// Eq. 2.14: P* = p0 (nu C/nu_c) e (1 - gamma_p e), e = ln(nu/nu_c); over k* = k/(2<r>), compression
-/// positive. 0 at and below jamming_density().
+/// positive. Rises from 0 at jamming_density(); C is the one of at_least_isostatic().
 inline double pressure(const PressureCurve& p, double nu) {
   if (nu <= jamming_density(p)) return 0.0;
-  const double e = std::log(nu / p.nu_c);
-  return p.p0 * nu * coordination(p.contacts, nu) / p.nu_c * e * (1 - p.gamma_p * e);
+  const double e = std::log(nu / p.nu_c), C = coordination(p.contacts, at_least_isostatic(p.contacts, nu));
+  return p.p0 * nu * C / p.nu_c * e * (1 - p.gamma_p * e);
 }
 
 /// dP*/d ln nu of Eq. 2.14; 0 at and below jamming_density().
 inline double pressure_slope(const PressureCurve& p, double nu) {
   if (nu <= jamming_density(p)) return 0.0;
-  const double e = std::log(nu / p.nu_c), C = coordination(p.contacts, nu);
+  const double e = std::log(nu / p.nu_c), C = coordination(p.contacts, at_least_isostatic(p.contacts, nu));
   const double dC = nu * coordination_slope(p.contacts, nu);
   return p.p0 * nu / p.nu_c * ((C + dC) * e * (1 - p.gamma_p * e) + C * (1 - 2 * p.gamma_p * e));
 }
 
-/// The same law for another history: phi_J in place of every nu_c (Eqs. 5.7 to 5.9).
+/// The same law for another history: phi_J in place of nu_c (Eqs. 5.7 to 5.9), the nu_c of its contacts moved
+/// in proportion. P* at nu is then that of `p` at nu p.nu_c/phi_J.
 inline PressureCurve with_jamming_density(PressureCurve p, double phi_J) {
+  p.contacts.nu_c *= phi_J / p.nu_c;
   p.nu_c = phi_J;
-  p.contacts.nu_c = phi_J;
   return p;
 }
 

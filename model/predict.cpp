@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/model/point.hpp"
@@ -87,26 +88,62 @@ void tell_events(const std::vector<MaterialPoint::Event>& events, std::vector<st
     warnings.push_back("unjams and jams " + std::to_string(events.size() - most_events) + " times more");
 }
 
-/// Eq. 4.16 has no restoring term in dP*: reversals pump pressure.
-void tell_drift(const Law& law, const std::vector<Leg>& legs, std::vector<std::string>& warnings) {
-  if (form_of(law) != Form::coupled) return;
-  int reversals = 0;
-  double before = 0;
-  for (const Leg& leg : legs) {
-    const double now = leg.eps_dev[1] - leg.eps_dev[0];
-    if (now * before < 0) ++reversals;
-    if (now != 0) before = now;
-  }
-  if (reversals >= 4)
-    warnings.push_back(
-        "Eq. 4.16 gains pressure with every half cycle of shear without a bound (0.1 to 0.9 % at nu = 0.711, "
-        "more for a higher start P); " +
-        std::to_string(reversals) + " reversals on this path");
+/// Where a direction of shear ended.
+struct Turn {
+  double q, eps_dev, P;
+};
+
+/// Change of P per half cycle between two ends of the same direction one cycle apart, as a part of P; 0 where
+/// the cycle is not closed, or no pressure was left. A cycle is compared and not its halves, because within
+/// one P also dips after a reversal and recovers.
+double drift_over_cycle(const Turn& before, const Turn& reversal, const Turn& after) {
+  constexpr double closed = 0.01;  // of the strain of a half cycle
+  const bool returns =
+      std::abs(after.eps_dev - before.eps_dev) <= closed * std::abs(after.eps_dev - reversal.eps_dev);
+  return returns && before.P > 0 && after.P > 0 ? std::sqrt(after.P / before.P) - 1 : 0;
 }
 
+/// The largest drift_over_cycle() in shear at constant volume; `P_at_ends` of the legs that were walked.
+double pressure_drift(const std::vector<Leg>& legs, const std::vector<double>& P_at_ends) {
+  constexpr double constant_volume = 1e-9;  // of the shear strain
+  double largest = 0;
+  std::vector<Turn> turns;  // since the volume last changed
+  for (std::size_t i = 0; i < P_at_ends.size(); ++i) {
+    const double volume = legs[i].eps_vol[1] - legs[i].eps_vol[0],
+                 shear = legs[i].eps_dev[1] - legs[i].eps_dev[0], q = shear > 0 ? 1 : -1;
+    if (std::abs(volume) > constant_volume * std::abs(shear)) {
+      turns.clear();
+    } else if (shear != 0) {
+      if (!turns.empty() && turns.back().q == q) turns.pop_back();
+      turns.push_back({q, legs[i].eps_dev[1], P_at_ends[i]});
+    }
+    if (turns.size() < 3) continue;
+    const double drift = drift_over_cycle(turns.end()[-3], turns.end()[-2], turns.back());
+    if (std::abs(drift) > std::abs(largest)) largest = drift;
+  }
+  return largest;
+}
+
+/// Eq. 4.16 has no restoring term in dP*: cycles of shear pump pressure.
+void tell_drift(double drift, std::vector<std::string>& warnings) {
+  constexpr double tolerated = 0.01;
+  if (std::abs(drift) <= tolerated) return;
+  char percent[32];
+  std::snprintf(percent, sizeof percent, "%.1f", 100 * std::abs(drift));
+  warnings.push_back(std::string(drift > 0 ? "gains" : "loses") + " up to " + percent +
+                     " % of P per half cycle of shear at constant volume, without a bound: Eq. 4.16 has no "
+                     "restoring term in dP");
+}
+
+struct Walked {
+  Status status;
+  std::vector<double> P_at_ends;  // of the legs, up to a failure
+};
+
 /// Walks the legs and appends a row per sample.
-Status walk_legs(MaterialPoint& point, const Path& path, const std::vector<Leg>& legs,
+Walked walk_legs(MaterialPoint& point, const Path& path, const std::vector<Leg>& legs,
                  const std::vector<Sample>& samples, Record& record) {
+  Walked walked;
   auto next = samples.begin();
   std::vector<double> fractions;
   for (std::size_t i = 0; i < legs.size(); ++i) {
@@ -114,18 +151,20 @@ Status walk_legs(MaterialPoint& point, const Path& path, const std::vector<Leg>&
     fractions.clear();
     for (; next != samples.end() && next->leg == i; ++next) fractions.push_back(next->progress);
     if (leg.mode == Mode::relax) point.relax();
-    Status status =
+    walked.status =
         point.walk(leg.eps_vol[1] - leg.eps_vol[0], leg.eps_dev[1] - leg.eps_dev[0], fractions,
                    [&](std::size_t, const State& state) { append_row(record, point.law(), state, i); });
-    if (status.failed()) {
-      status.message = path.segments[i].key + ": " + status.message;
-      return status;
+    if (walked.status.failed()) {
+      walked.status.message = path.segments[i].key + ": " + walked.status.message;
+      return walked;
     }
+    walked.P_at_ends.push_back(point.state().P);
   }
   const State& end = point.state();
   if (!end.jammed)
-    return {Status::Code::unjammed, "carries no stress at the end: unjammed " + where(end.nu, end.eps_dev)};
-  return {};
+    walked.status = {Status::Code::unjammed,
+                     "carries no stress at the end: unjammed " + where(end.nu, end.eps_dev)};
+  return walked;
 }
 
 }  // namespace
@@ -138,9 +177,10 @@ Prediction predict(const ParameterSet& parameters, const Path& path, const std::
   check_samples(samples, legs.size());
   Prediction prediction{Record(prediction_columns()), start.echo, start.warnings, {}};
   MaterialPoint point(start.law, start.state, {options.rtol, options.atol});
-  prediction.status = walk_legs(point, path, legs, samples, prediction.record);
+  const Walked walked = walk_legs(point, path, legs, samples, prediction.record);
+  prediction.status = walked.status;
   tell_events(point.events(), prediction.warnings);
-  tell_drift(start.law, legs, prediction.warnings);
+  tell_drift(pressure_drift(legs, walked.P_at_ends), prediction.warnings);
   return prediction;
 }
 

@@ -53,7 +53,22 @@ class Filling {
     echo("nu", *start_.nu, "given");
   }
 
+  void set_phi_J(double phi_J, const std::string& from) {
+    result_.state.phi_J = phi_J;
+    echo("phi_J", phi_J, from);
+  }
+  /// Another jamming density than that of the parameter set moves every law with it.
+  void take_history(double phi_J, const std::string& from) {
+    laws() = with_jamming_density(laws(), phi_J);
+    set_phi_J(phi_J, from);
+  }
+
   void fill_phi_J();
+  void check_phi_max();
+  /// The reduced forms get P by the law at that phi_J. The coupled form integrates from the given P: its laws
+  /// are left as they are.
+  void infer_phi_J(double P);
+  std::string beyond_pressure_law(double P);
   void fill_P();
   void fill_shear();
   void settle();
@@ -65,40 +80,53 @@ class Filling {
 };
 
 void Filling::fill_phi_J() {
-  PressureCurve& law = laws().pressure;
-  double& phi_J = result_.state.phi_J;
-  std::string from;
-  if (start_.phi_max) {
-    if (*start_.phi_max < *start_.nu)
-      fail("phi_max", "must be >= start.nu = " + to_text(*start_.nu) + ", got " + to_text(*start_.phi_max));
-    const bool used = !start_.phi_J && !start_.P;
-    echo("phi_max", *start_.phi_max, used ? "given" : "given; not used, P or phi_J says more");
-  }
+  check_phi_max();
   if (start_.phi_J) {
     if (start_.P && !coupled())
       fail("phi_J", "redundant: with start.P given, the " + name_of(form_of(result_.law)) +
                         " form finds phi_J by the pressure law; give one");
-    phi_J = *start_.phi_J;
-    from = "given";
+    take_history(*start_.phi_J, "given");
   } else if (start_.P) {
-    const auto inferred = jamming_density_from_pressure(law, *start_.nu, *start_.P);
-    if (!inferred && !coupled())
-      fail("P", to_text(*start_.P) + " is more than " + pressure_law() +
-                    " gives at nu = " + to_text(*start_.nu) + " for any phi_J");
-    phi_J = inferred.value_or(std::numeric_limits<double>::quiet_NaN());
-    from = inferred ? "start.P, by " + pressure_law() : "unknown: start.P is beyond " + pressure_law();
+    infer_phi_J(*start_.P);
   } else if (start_.phi_max) {
     const auto memory = parameters_.need_memory("start.phi_max").over_compression();
-    phi_J = jamming_density_after(memory, *start_.phi_max, 1);
-    from = "start.phi_max, by Eqs. 5.1 and 5.5 with M = 1";
+    take_history(jamming_density_after(memory, *start_.phi_max, 1),
+                 "start.phi_max, by Eqs. 5.1 and 5.5 with M = 1");
   } else {
-    phi_J = jamming_density(law);
-    from = "nu_c of " + pressure_law();
-    echo("phi_J", phi_J, from);
-    return;  // the law as it stands
+    set_phi_J(jamming_density(laws().pressure), "nu_c of " + pressure_law());
   }
-  if (std::isfinite(phi_J)) law = with_jamming_density(law, phi_J);
-  echo("phi_J", phi_J, from);
+}
+
+void Filling::check_phi_max() {
+  if (!start_.phi_max) return;
+  if (*start_.phi_max < *start_.nu)
+    fail("phi_max", "must be >= start.nu = " + to_text(*start_.nu) + ", got " + to_text(*start_.phi_max));
+  const bool used = !start_.phi_J && !start_.P;
+  echo("phi_max", *start_.phi_max, used ? "given" : "given; not used, P or phi_J says more");
+}
+
+void Filling::infer_phi_J(double P) {
+  const auto phi_J = jamming_density_from_pressure(laws().pressure, *start_.nu, P);
+  const std::string from = "start.P, by " + pressure_law();
+  if (coupled())
+    set_phi_J(phi_J.value_or(std::numeric_limits<double>::quiet_NaN()),
+              phi_J ? from : "unknown: start.P is beyond " + pressure_law());
+  else if (phi_J)
+    take_history(*phi_J, from);
+  else
+    fail("P", beyond_pressure_law(P));
+}
+
+std::string Filling::beyond_pressure_law(double P) {
+  const PressureCurve& law = laws().pressure;
+  const double range = range_of_inversion(law), phi_J = *start_.nu * std::exp(-range);
+  const std::string most = shown(pressure(law, law.nu_c * std::exp(range))),
+                    at = " at nu = " + to_text(*start_.nu);
+  if (range < 1)
+    return to_text(P) + " is above the maximum of " + pressure_law() + at + ", " + most +
+           " with phi_J = " + shown(phi_J);
+  return to_text(P) + " is more than " + pressure_law() + " gives" + at + " with phi_J down to " +
+         shown(phi_J) + ", at most " + most;
 }
 
 void Filling::fill_P() {

@@ -13,7 +13,7 @@
 namespace grainlaw::model {
 
 struct StartState {
-  Law law;  ///< with the pressure law at the jamming density of this start
+  Law law;  ///< at the jamming density of this start
   State state;
   Json echo;  ///< {"nu": {"value": 0.711, "from": "given"}, ...} for nu, P, sigma_dev, F_dev, phi_J
   std::vector<std::string> warnings;

@@ -170,7 +170,7 @@ TEST(SceneRefuses, UnknownKeys) {
 
 TEST(SceneRefuses, WrongTypes) {
   EXPECT_EQ(refusal(with("material", R"({"k": "hard"})")),
-            "scene.json: material.k: must be a number > 0, got \"hard\"");
+            "scene.json: material.k: must be a number >= 1e-15 and <= 1e+15, got \"hard\"");
   EXPECT_EQ(refusal(with("preparation", R"({"count": 10.5})")),
             "scene.json: preparation.count: must be a whole number from 8 to 10000000, got 10.5");
   EXPECT_EQ(refusal(with("preparation", "[]")), "scene.json: preparation: must be an object {...}, got []");
@@ -189,22 +189,22 @@ TEST(SceneRefuses, NumbersOutOfRange) {
   };
   key_value_and_right("material", "w", "0.5", ">= 1 and <= 100");
   key_value_and_right("material", "w", "101", ">= 1 and <= 100");
-  key_value_and_right("material", "k", "-100000.0", "> 0");
-  key_value_and_right("material", "r_mean", "0", "> 0");
-  key_value_and_right("material", "rho", "-1", "> 0");
-  key_value_and_right("material", "gamma", "-1", ">= 0");
-  key_value_and_right("material", "gamma_b", "-0.5", ">= 0");
+  key_value_and_right("material", "k", "-100000.0", ">= 1e-15 and <= 1e+15");
+  key_value_and_right("material", "r_mean", "0", ">= 1e-15 and <= 1e+15");
+  key_value_and_right("material", "rho", "-1", ">= 1e-15 and <= 1e+15");
+  key_value_and_right("material", "gamma", "-1", ">= 0 and <= 1e+15");
+  key_value_and_right("material", "gamma_b", "-0.5", ">= 0 and <= 1e+15");
   key_value_and_right("preparation", "count", "7", "a whole number from 8 to 10000000");
   key_value_and_right("preparation", "count", "10000001", "a whole number from 8 to 10000000");
   key_value_and_right("preparation", "seed", "-1", "a whole number from 0 to 9007199254740992");
   key_value_and_right("preparation", "seed", "9007199254740994", "a whole number from 0 to 9007199254740992");
   key_value_and_right("preparation", "nu_gas", "0", "> 0 and <= 0.45");
   key_value_and_right("preparation", "nu_gas", "0.46", "> 0 and <= 0.45");
-  key_value_and_right("preparation", "speed", "0", "> 0");
+  key_value_and_right("preparation", "speed", "0", "> 0 and <= 1e+06");
   key_value_and_right("preparation", "nu", "0", "> 0.3 and < 1");
   key_value_and_right("preparation", "nu", "0.3", "> 0.3 and < 1");
   key_value_and_right("preparation", "nu", "1", "> 0.3 and < 1");
-  key_value_and_right("preparation", "rate", "-1e-06", "> 0");
+  key_value_and_right("preparation", "rate", "-1e-06", "> 0 and <= 1e+06");
   key_value_and_right("measure", "rows", "0", "a whole number from 1 to 100000");
   key_value_and_right("measure", "rows", "100001", "a whole number from 1 to 100000");
   key_value_and_right("measure", "time_step", "0", "> 0 and <= 0.2");

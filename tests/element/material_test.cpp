@@ -34,5 +34,23 @@ TEST(Material, RefusesAnOverdampedContact) {
   EXPECT_THROW(read(R"({"k": -1})"), Error);
 }
 
+TEST(MaterialFile, DefaultViscositiesDampAsMuchAsTheThesis) {
+  const auto read = [](const std::string& text) {
+    return Material::read(Reader(parse_json(text, "m"), "m"));
+  };
+  const Material thesis = read("{}"), other = read(R"({"k": 7e3, "r_mean": 0.1, "rho": 2650})");
+  EXPECT_EQ(thesis.gamma, 1000);
+  EXPECT_EQ(thesis.gamma_b, 100);
+  // gamma / sqrt(k m) and the contact duration over sqrt(m/k), of equal grains of mean size.
+  const auto mass = [](const Material& m) { return m.rho * std::pow(m.r_mean, 3); };
+  const auto damping = [&](const Material& m) { return m.gamma / std::sqrt(m.k * mass(m)); };
+  const auto duration = [&](const Material& m) {
+    return m.contact_duration(m.r_mean) / std::sqrt(mass(m) / m.k);
+  };
+  EXPECT_NEAR(damping(other), damping(thesis), 1e-12 * damping(thesis));
+  EXPECT_NEAR(duration(other), duration(thesis), 1e-12 * duration(thesis));
+  EXPECT_EQ(read(R"({"k": 7e3, "gamma": 3})").gamma, 3);
+}
+
 }  // namespace
 }  // namespace grainlaw

@@ -36,9 +36,9 @@ class RecordFile : public testing::Test {
 TEST_F(RecordFile, RoundTripIsExact) {
   Record record({"nu", "s_dev"});
   record.append({0.1 + 0.2, std::numeric_limits<double>::quiet_NaN()});
-  record.append({-5e-324, 1.7976931348623157e308});
+  record.append({5e-324, -1.7976931348623157e308});
   record.write_csv(file_);
-  EXPECT_EQ(read_file(file_), "nu,s_dev\n0.30000000000000004,\n-5e-324,1.7976931348623157e+308\n");
+  EXPECT_EQ(read_file(file_), "nu,s_dev\n0.30000000000000004,\n5e-324,-1.7976931348623157e+308\n");
   const Record back = Record::read_csv(file_);
   EXPECT_EQ(back["nu"], record["nu"]);
   EXPECT_TRUE(std::isnan(back["s_dev"][0]));
@@ -73,6 +73,25 @@ TEST_F(RecordFile, AFolderThatIsNotThereIsNamed) {
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "/nowhere/record.csv: cannot be written: No such file or directory");
+  }
+}
+
+TEST_F(RecordFile, WritesWhereALinkPointsAndIntoADevice) {
+  const std::string link = file_.string() + ".link";
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink(file_, link);
+  write_file(link, "through the link");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(read_file(file_), "through the link");
+  std::filesystem::remove(link);
+  ASSERT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  write_file("/dev/null", "lost");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  try {
+    write_file("/dev/full", "no room");
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_TRUE(error.unwritable());
   }
 }
 

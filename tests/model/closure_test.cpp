@@ -28,6 +28,18 @@ TEST(Closure, RowKeepsTheRowsOwnJammingDensity) {
   EXPECT_EQ(laws.contacts.nu_c, 0.6625);
 }
 
+TEST(Closure, AnotherHistoryMovesEveryLaw) {
+  const Laws laws = laws_of(thesis(), Form::coupled), moved = with_jamming_density(laws, 0.65);
+  const double factor = 0.65 / 0.6649, F_v = isotropic_fabric(laws.contacts, 1, 0.711);
+  EXPECT_EQ(moved.pressure.nu_c, 0.65);
+  EXPECT_EQ(moved.contacts.nu_c, moved.moduli.nu_c);  // B is finite where contacts begin
+  EXPECT_NEAR(isotropic_fabric(moved.contacts, 1, 0.711 * factor), F_v * factor, 1e-13);
+  EXPECT_NEAR(pressure(moved.pressure, 0.711 * factor), pressure(laws.pressure, 0.711), 1e-15);
+  EXPECT_NEAR(bulk_modulus(moved.moduli, moved.contacts, 0.711 * factor), 0.4279, 5e-5);
+  for (const auto law : {&Laws::s_max, &Laws::F_max, &Laws::beta_F})
+    EXPECT_NEAR(saturation(moved.*law, 0.711 * factor), saturation(laws.*law, 0.711), 1e-12);
+}
+
 TEST(Closure, SizeFactorFollowsTheMaterialWhereNoModuliAreKnown) {
   ParameterSet set = thesis();
   EXPECT_EQ(laws_of(set, Form::reduced).g3, 1.22);

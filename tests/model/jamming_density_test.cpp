@@ -43,5 +43,30 @@ TEST(JammingDensity, FromPressure) {
   EXPECT_FALSE(jamming_density_from_pressure(law, 0.7, 3.0).has_value());
 }
 
+TEST(JammingDensity, OfAParameterSetsOwnPressureIsItsOwn) {
+  const PressureCurve d2{{6, 7.9219, 0.5769, 0.6601, 0.1363, 15.0010}, 0.03886, 0.03219, 0.6581};
+  for (const double nu : {0.6582, 0.6595, 0.6601, 0.6605, 0.711})
+    EXPECT_NEAR(jamming_density_from_pressure(d2, nu, pressure(d2, nu)).value(), 0.6581, 1e-12) << nu;
+}
+
+TEST(JammingDensity, FromPressureUpToTheMaximumOfTheLaw) {
+  // Above gamma_p = 0.5 P* has a maximum at ln(nu/phi_J) between 1/(2 gamma_p) and 1/gamma_p.
+  for (const double gamma_p : {0.6, 1.0, 2.0, 5.0}) {
+    SCOPED_TRACE(gamma_p);
+    const PressureCurve law{{6, 8.2720, 0.5814, 0.6646, 0.1216, 15.8950}, 0.04172, gamma_p, 0.6649};
+    const auto P_at = [&](double e) { return pressure(law, 0.6649 * std::exp(e)); };
+    double most = 0, e_most = 0;
+    for (double e = 0; e < std::min(1.0, 1 / gamma_p); e += 1e-4)
+      if (P_at(e) > most) most = P_at(e), e_most = e;
+    EXPECT_GE(e_most, std::min(0.999, 1 / (2 * gamma_p)));
+    EXPECT_NEAR(range_of_inversion(law), e_most, 2e-4);
+    for (const double part : {0.01, 0.5, 0.9, 0.99}) {
+      const double e = part * e_most;
+      EXPECT_NEAR(jamming_density_from_pressure(law, 0.75, P_at(e)).value(), 0.75 * std::exp(-e), 1e-9) << e;
+    }
+    EXPECT_FALSE(jamming_density_from_pressure(law, 0.75, 1.001 * most).has_value());
+  }
+}
+
 }  // namespace
 }  // namespace grainlaw::model

@@ -67,11 +67,18 @@ TEST(PackingLaws, AtJammingContactsAreIsostaticAndSlopesInfinite) {
   }
 }
 
-TEST(PackingLaws, PressureNeedsContacts) {
-  // D2: the pressure law begins at 0.6581, its contacts only at 0.6601.
-  EXPECT_EQ(jamming_density(d2.law), 0.6601);
-  EXPECT_EQ(pressure(d2.law, 0.6595), 0);
-  EXPECT_GT(pressure(d2.law, 0.6602), 5e-4);
+TEST(PackingLaws, PressureRisesFromZeroWhereItsContactsBeginLater) {
+  // D2: the pressure law begins at 0.6581, its contacts only at 0.6601; between, C is that of 0.6601.
+  EXPECT_EQ(jamming_density(d2.law), 0.6581);
+  EXPECT_EQ(pressure(d2.law, 0.6581), 0);
+  for (const double nu : {0.6581 * (1 + 1e-9), 0.6582, 0.6595, 0.6601}) {
+    const double e = std::log(nu / 0.6581), C = 6 * (1 - 0.1363);
+    const double expected = 0.03886 * nu * C / 0.6581 * e * (1 - 0.03219 * e);
+    EXPECT_NEAR(pressure(d2.law, nu), expected, 1e-14 * expected + 1e-18) << nu;
+  }
+  EXPECT_NEAR(pressure(d2.law, 0.6601 * (1 + 1e-12)), pressure(d2.law, 0.6601), 1e-8);
+  expect_v_shape([](double e) { return pressure(d2.law, std::exp(e)); }, std::log(0.6590),
+                 pressure_slope(d2.law, 0.6590), 0.01);
 }
 
 TEST(PackingLaws, Slopes) {
@@ -93,9 +100,11 @@ TEST(PackingLaws, Slopes) {
 TEST(PackingLaws, AnotherHistoryShiftsEveryJammingDensity) {
   const PressureCurve law = with_jamming_density(iso.law, 0.66);
   EXPECT_EQ(jamming_density(law), 0.66);
-  const double x = 0.662 / 0.66 - 1, e = std::log(0.662 / 0.66);
+  const double x = 0.662 / (0.6646 * 0.66 / 0.6649) - 1, e = std::log(0.662 / 0.66);
   const double C = (6 + 8.272 * std::pow(x, 0.5814)) * (1 - 0.1216 * std::exp(-15.895 * x));
   EXPECT_NEAR(pressure(law, 0.662), 0.04172 * 0.662 * C / 0.66 * e * (1 - 0.06228 * e), 1e-16);
+  // Its own history changes nothing.
+  EXPECT_EQ(pressure(with_jamming_density(iso.law, 0.6649), 0.711), pressure(iso.law, 0.711));
 }
 
 }  // namespace

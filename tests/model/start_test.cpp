@@ -61,6 +61,37 @@ TEST(Start, JammingDensityReplacesTheOneOfThePressureLaw) {
   EXPECT_FALSE(started(R"("nu": 0.669, "phi_J": 0.67)").state.jammed);
 }
 
+TEST(Start, JammingDensityMovesTheContactLawsToo) {
+  // 0.652 is jammed with phi_J = 0.65, where the set has contacts from 0.658 on.
+  for (const Form form : {Form::reduced_closed, Form::reduced, Form::coupled}) {
+    SCOPED_TRACE(name_of(form));
+    const StartState s = started(R"("nu": 0.652, "phi_J": 0.65)", form);
+    EXPECT_TRUE(s.state.jammed);
+    EXPECT_TRUE(s.warnings.empty());
+    const double factor = 0.65 / 0.6649;
+    EXPECT_DOUBLE_EQ(laws_of(s.law).contacts.nu_c, 0.658 * factor);
+    const Contacts contacts = contacts_of(s.law, s.state);
+    ContactCurve d2 = laws_of(thesis(), form).contacts;
+    EXPECT_NEAR(contacts.C_star, corrected_coordination(d2, 0.652 / factor), 1e-12);
+    EXPECT_NEAR(contacts.f_NR, 1 - rattlers(d2, 0.652 / factor), 1e-13);
+  }
+  EXPECT_DOUBLE_EQ(laws_of(started(R"("nu": 0.7, "phi_max": 0.82)").law).contacts.nu_c,
+                   0.658 * started(R"("nu": 0.7, "phi_max": 0.82)").state.phi_J / 0.6649);
+}
+
+TEST(Start, ThePressureOfASetLeavesTheReducedLawsAsTheyAre) {
+  const StartState filled = started(R"("nu": 0.711)", Form::reduced);
+  const StartState given = started(R"("nu": 0.711, "P": )" + to_text(filled.state.P), Form::reduced);
+  EXPECT_NEAR(given.state.phi_J, 0.6649, 1e-12);
+  EXPECT_NEAR(laws_of(given.law).contacts.nu_c, 0.658, 1e-12);
+}
+
+TEST(Start, PressureLeavesTheCoupledLawsAsTheyAre) {
+  const StartState s = started(R"("nu": 0.711, "P": 0.0264)");
+  EXPECT_NEAR(s.state.phi_J, 0.6583, 5e-5);  // of a reduced form
+  EXPECT_EQ(laws_of(s.law).contacts.nu_c, 0.658);
+}
+
 TEST(Start, LargestVolumeFractionSeenGivesTheJammingDensity) {
   const StartState s = started(R"("nu": 0.7, "phi_max": 0.82)");
   EXPECT_NEAR(s.state.phi_J, 0.66503, 5e-6);  // Eqs. 5.1, 5.5 with M = 1
@@ -81,10 +112,24 @@ TEST(Start, ReducedFormsFindTheJammingDensityFromPressure) {
   EXPECT_THAT(refused(R"("nu": 0.711, "P": 0.025, "phi_J": 0.66)", Form::reduced),
               HasSubstr("start.phi_J: redundant"));
   EXPECT_THAT(refused(R"("nu": 0.7, "P": 3)", Form::reduced), HasSubstr("start.P: 3 is more than"));
+  EXPECT_THAT(refused(R"("nu": 0.7, "P": 3)", Form::reduced),
+              HasSubstr("with phi_J down to 0.257516, at most "));
   // The coupled form only starts there.
   const StartState beyond = started(R"("nu": 0.7, "P": 3)");
   EXPECT_EQ(beyond.state.P, 3);
   EXPECT_TRUE(beyond.echo["phi_J"]["value"].is_null());
+}
+
+TEST(Start, PressureMayBeUpToTheMaximumOfItsLaw) {
+  ParameterSet set = thesis();
+  set.isotropic.at("iso").gamma_p.value = 1;
+  const auto start_with = [&](double P) {
+    return start_of(set, start(R"("nu": 0.7, "P": )" + to_text(P)), Form::reduced).state;
+  };
+  EXPECT_GT(pressure(laws_of(set, Form::reduced).pressure, 0.6649 * std::exp(0.6)), 0.2);
+  EXPECT_NEAR(start_with(0.2).P, 0.2, 1e-12);
+  EXPECT_THAT(refusal([&] { start_with(3); }),
+              HasSubstr("start.P: 3 is above the maximum of the pressure law"));
 }
 
 TEST(Start, Unjammed) {
