@@ -107,7 +107,8 @@ Json test_json(const CampaignTest& test) {
   return json;
 }
 
-/// First difference of two JSON values below `key`, in words.
+}  // namespace
+
 std::string first_difference(const Json& there, const Json& here, const std::string& key) {
   if (there == here) return "";
   if (there.is_object() && here.is_object()) {
@@ -131,8 +132,6 @@ std::string first_difference(const Json& there, const Json& here, const std::str
   }
   return key + ": " + there.dump() + " there, " + here.dump() + " here";
 }
-
-}  // namespace
 
 std::string name_of(Role role) { return role == Role::fit ? "fit" : "predict"; }
 
@@ -186,7 +185,7 @@ const CampaignTest& Campaign::test(std::string_view wanted) const {
 }
 
 std::string difference(const Campaign& there, const Campaign& here) {
-  return first_difference(there.to_json(), here.to_json(), "");
+  return first_difference(there.to_json(), here.to_json());
 }
 
 }  // namespace grainlaw::calibrate

@@ -64,6 +64,10 @@ struct Campaign {
 /// The directory name of a record: TEST-sSEED.
 std::string record_name(std::string_view test, std::int64_t seed);
 
+/// Where two JSON values first differ, in words ("rows: 100 there, 200 here"), below `key`; the order of keys
+/// does not count. Empty if they are the same.
+std::string first_difference(const Json& there, const Json& here, const std::string& key = "");
+
 /// Where two campaigns first differ, in words ("preparation.count: 500 there, 1000 here"); empty if they are
 /// the same.
 std::string difference(const Campaign& there, const Campaign& here);

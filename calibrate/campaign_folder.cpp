@@ -67,6 +67,8 @@ CampaignFolder::CampaignFolder(const Campaign& campaign, fs::path dir, Use use) 
   std::error_code code;
   if (fs::exists(dir_, code) && !fs::is_directory(dir_, code))
     throw Error(dir_.string(), "", "is a file, must be a directory");
+  if (use == Use::resume && !fs::exists(dir_ / campaign_name, code))
+    throw Error(dir_.string(), "", "holds no campaign to go on with; leave --resume out to start one there");
   if (fs::is_directory(dir_, code)) check_usable(dir_, campaign, use);
   const bool made = fs::create_directories(dir_, code);
   if (code) throw Error(dir_.string(), "", "cannot be made: " + code.message());
@@ -86,14 +88,6 @@ CampaignFolder::CampaignFolder(const Campaign& campaign, fs::path dir, Use use) 
   }
 }
 
-bool CampaignFolder::has_record(const std::string& name) const {
-  const fs::path folder = record(name);
-  if (!fs::exists(folder)) return false;
-  for (const char* file : {"record.csv", "scene.json", "provenance.json"})
-    if (!fs::exists(folder / file))
-      throw Error((folder / file).string(), "",
-                  "no such file; remove " + folder.string() + " to have it run again");
-  return true;
-}
+bool CampaignFolder::has_record(const std::string& name) const { return fs::exists(record(name)); }
 
 }  // namespace grainlaw::calibrate

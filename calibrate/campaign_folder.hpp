@@ -17,14 +17,14 @@ class CampaignFolder {
 
   /// Makes `dir`, locks it and writes campaign.json. Throws Error, and changes nothing, if `dir` holds
   /// something else: another campaign (and where it differs), files of an unknown kind, or, for Use::fresh,
-  /// this campaign already. Use::resume takes a new or empty directory as well.
+  /// this campaign already; for Use::resume, no campaign.
   CampaignFolder(const Campaign& campaign, std::filesystem::path dir, Use use);
 
   const std::filesystem::path& dir() const { return dir_; }
   /// records/NAME, and records/NAME.part while it is being made.
   std::filesystem::path record(const std::string& name) const { return dir_ / "records" / name; }
   std::filesystem::path part(const std::string& name) const { return dir_ / "records" / (name + ".part"); }
-  /// Whether the record is complete. Throws Error if its directory is there but one of its files is not.
+  /// Whether there is a directory of that record; see check_kept_record() for what is in it.
   bool has_record(const std::string& name) const;
 
  private:

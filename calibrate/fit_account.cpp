@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+
+#include "grainlaw/element/error.hpp"
 
 namespace grainlaw::calibrate {
 namespace {
 
 constexpr const char* nu_label = "volume fraction ν";
 constexpr double thesis_nu_c = 0.6653;  // of Table 2.2, where no isotropic test tells
+
+constexpr double narrow_pressure = 4;  // times P_min: from there on the packing laws are fitted once more
 
 /// The states of one mode and role, pooled over tests and seeds.
 struct Pool {
@@ -46,19 +51,27 @@ std::function<double(double)> coordination_of(const PackingFit& fit) {
   };
 }
 
-/// How far each parameter moves when only rows of at least twice the pressure are taken.
-std::vector<double> shift_of(const FitResult& base, const FitResult& other) {
-  if (!base.ran || !other.ran) return {};
-  std::vector<double> shift;
-  for (std::size_t i = 0; i < base.parameters.size(); ++i) {
-    shift.push_back(other.parameters[i].value - base.parameters[i].value);
-  }
+std::size_t states_in(const Pool& pool) {
+  std::size_t states = 0;
+  for (const PackingSeries& series : pool.series) states += series.states.size();
+  return states;
+}
+
+/// How far each parameter moves when only rows of at least four times the pressure are taken: NaN where these
+/// are all rows (`narrow` null).
+std::vector<double> shift_of(const PackingFit& base, const PackingFit* narrow, FitResult PackingFit::*law) {
+  const FitResult& now = base.*law;
+  std::vector<double> shift(now.parameters.size(), std::numeric_limits<double>::quiet_NaN());
+  if (narrow == nullptr || !now.ran || !(narrow->*law).ran) return shift;
+  for (std::size_t i = 0; i < shift.size(); ++i)
+    shift[i] = (narrow->*law).parameters[i].value - now.parameters[i].value;
   return shift;
 }
 
-/// The four entries of a mode: C*, C* with C0 free, rattlers, pressure.
+/// The four entries of a mode: C*, C* with C0 free, rattlers, pressure. `narrow` is the fit to the rows of
+/// larger pressure, null where these are all rows.
 void add_packing_entries(Account& account, const std::string& mode, Role role, const Pool& pool,
-                         const PackingFit& fit, const PackingFit& narrow, const Reference& reference,
+                         const PackingFit& fit, const PackingFit* narrow, const Reference& reference,
                          const Selection& selection, const std::string& suffix) {
   FitEntry entry;
   entry.role = role;
@@ -69,28 +82,41 @@ void add_packing_entries(Account& account, const std::string& mode, Role role, c
   entry.rows_left_out = pool.left_out;
   entry.thesis = reference.thesis_packing(mode);
   const auto add = [&](const std::string& name, const std::string& law, const std::string& y,
-                       const std::string& label, const FitProblem& problem, const FitResult& result,
-                       const FitResult& other, double from) {
+                       const std::string& label, const FitProblem& problem, FitResult PackingFit::*result,
+                       double from) {
     entry.name = "isotropic." + mode + "." + name + suffix;
     entry.law = law;
     entry.y_name = y;
     entry.y_label = label;
     entry.problem = problem;
-    entry.result = result;
+    entry.result = fit.*result;
     entry.curve_from = from;
-    entry.shift = is_shear(mode) ? std::vector<double>{} : shift_of(result, other);
+    entry.shift = is_shear(mode) ? std::vector<double>{} : shift_of(fit, narrow, result);
     account.entries.push_back(entry);
   };
   add("C_star", "C* = C0 + C1 (ν/ν_c − 1)^α (Eq. 2.11)", "C_star", "corrected coordination number C*",
-      fit.contacts_law, fit.contacts, narrow.contacts, fit.contacts.value("nu_c_contacts"));
+      fit.contacts_law, &PackingFit::contacts, fit.contacts.value("nu_c_contacts"));
   add("C_star_free_C0", "C* = C0 + C1 (ν/ν_c − 1)^α with C0 free, near jamming (Eq. 2.11)", "C_star",
-      "corrected coordination number C*", fit.contacts_free_C0_law, fit.contacts_free_C0,
-      narrow.contacts_free_C0, fit.contacts_free_C0.value("nu_c_contacts"));
+      "corrected coordination number C*", fit.contacts_free_C0_law, &PackingFit::contacts_free_C0,
+      fit.contacts_free_C0.value("nu_c_contacts"));
   add("phi_r", "φ_r = φ_c exp[−φ_v (ν/ν_c − 1)] (Eq. 2.12)", "phi_r", "fraction of rattlers φ_r",
-      fit.rattlers_law, fit.rattlers, narrow.rattlers, fit.rattlers.value("nu_c_contacts"));
+      fit.rattlers_law, &PackingFit::rattlers, fit.rattlers.value("nu_c_contacts"));
   entry.known_at = coordination_of(fit);
   add("P", "p = p0 (ν C/ν_c) ε (1 − γ_p ε), ε = ln(ν/ν_c), with the measured C (Eq. 2.14)", "P",
-      "pressure P*", fit.pressure_law, fit.pressure, narrow.pressure, fit.pressure.value("nu_c"));
+      "pressure P*", fit.pressure_law, &PackingFit::pressure, fit.pressure.value("nu_c"));
+}
+
+/// The fit to the rows from account.narrow_P_min on; none where these are all rows, or where the states are
+/// means over runs.
+std::optional<PackingFit> narrow_fit(const Account& account, const RecordFolder& folder,
+                                     const std::string& mode, Role role, const Pool& pool,
+                                     const Selection& selection, const KnownValues& fallback) {
+  if (is_shear(mode)) return std::nullopt;
+  Selection narrow = selection;
+  narrow.P_min = account.narrow_P_min;
+  const Pool fewer = pool_of(folder, mode, role, narrow, nullptr);
+  if (states_in(fewer) == states_in(pool)) return std::nullopt;
+  return fit_packing(fewer.series, Points::rows, fallback);
 }
 
 void fit_mode(Account& account, const RecordFolder& folder, const std::string& mode, Role role,
@@ -107,14 +133,26 @@ void fit_mode(Account& account, const RecordFolder& folder, const std::string& m
   const KnownValues fallback = role == Role::fit ? reference.packing(mode) : KnownValues{};
   const Points points = is_shear(mode) ? Points::runs : Points::rows;
   const PackingFit fit = fit_packing(pool.series, points, fallback);
-  Selection narrow = selection;
-  narrow.P_min *= 2;
-  const PackingFit other =
-      is_shear(mode) ? fit
-                     : fit_packing(pool_of(folder, mode, role, narrow, nullptr).series, points, fallback);
+  const std::optional<PackingFit> narrow = narrow_fit(account, folder, mode, role, pool, selection, fallback);
   const bool twice = role == Role::predict && account.packing.contains(mode);
-  add_packing_entries(account, mode, role, pool, fit, other, reference, selection, twice ? ".predict" : "");
-  if (role == Role::fit) account.packing[mode] = fit;
+  add_packing_entries(account, mode, role, pool, fit, narrow ? &*narrow : nullptr, reference, selection,
+                      twice ? ".predict" : "");
+  if (role != Role::fit) return;
+  account.packing[mode] = fit;
+  if (narrow) account.narrow[mode] = *narrow;
+}
+
+/// What the shear curve of one run shows: the projection, or the column that stands in for it.
+std::string shear_label(const std::string& quantity, bool projected) {
+  const std::string name = quantity == "s_dev" ? "stress ratio s_dev" : "fabric F_dev";
+  return name + (projected ? " along the mode" : ", signed √(3J₂)");
+}
+
+std::string shear_rule(const std::string& quantity, bool projected) {
+  const std::string letter = quantity == "s_dev" ? "s" : "F", unit = quantity == "s_dev" ? ", over P" : "";
+  if (!projected) return "y is the signed column " + quantity + ", for want of components";
+  return "y is the projection of " + letter + "xx, " + letter + "yy, " + letter +
+         "zz on the deviator of the mode" + unit;
 }
 
 FitEntry run_entry(const TestRecord& test, const std::string& quantity, const ShearCurve& curve,
@@ -129,12 +167,46 @@ FitEntry run_entry(const TestRecord& test, const std::string& quantity, const Sh
   entry.x_name = "eps_dev";
   entry.x_label = "deviatoric strain ε_dev";
   entry.y_name = quantity;
-  entry.y_label = stress ? "deviatoric stress ratio s_dev" : "deviatoric fabric F_dev";
-  entry.selection = loading_rule(selection);
+  entry.y_label = shear_label(quantity, curve.projected);
+  entry.selection = loading_rule(selection) + "; " + shear_rule(quantity, curve.projected);
   entry.rows_left_out = counted.left_out;
   entry.problem = approach_problem(curve);
   entry.result = fit(entry.problem);
   return entry;
+}
+
+bool is_result(const FitEstimate& e) { return e.determined && !e.at_bound && e.stderr_.has_value(); }
+
+RunValue run_value(const ShearCurve& curve, const FitEstimate& e) {
+  return {curve.test, curve.group, curve.nu, e.value, *e.stderr_, false};
+}
+
+/// The rate, where the run determines it.
+void take_rate(Account& account, const TestRecord& test, const ShearCurve& curve, const FitEstimate& beta,
+               ShearQuantity target) {
+  if (is_result(beta)) {
+    account.run_values[target].push_back(run_value(curve, beta));
+  } else {
+    account.left_out.push_back(
+        {test.name, test.role, "shear." + name_of(target) + ": not determined by this test: " + beta.reason});
+  }
+}
+
+/// The saturation value: an extrapolation, to be trusted only where the rate of the approach is known; else
+/// the mean of what the run has reached.
+void take_saturation(Account& account, const TestRecord& test, const ShearCurve& curve, const FitResult& fit,
+                     ShearQuantity target, const Selection& selection) {
+  std::vector<RunValue>& values = account.run_values[target];
+  if (is_result(fit["max"]) && is_result(fit["beta"])) {
+    values.push_back(run_value(curve, fit["max"]));
+  } else if (const auto mean = steady_mean(curve, selection)) {
+    values.push_back(*mean);
+  } else {
+    const std::string open = is_result(fit["max"]) ? fit["beta"].reason : fit["max"].reason;
+    account.left_out.push_back({test.name, test.role,
+                                "shear." + name_of(target) + ": not determined by this test: " + open +
+                                    ", and it has too few rows of a steady state"});
+  }
 }
 
 /// Fits s_dev and F_dev of one shear test; d2 tests of role fit give a point each of the laws over volume
@@ -153,20 +225,24 @@ void fit_shear_test(Account& account, const TestRecord& test, const Selection& s
     account.entries.push_back(run_entry(test, quantity, curve, counted, selection));
     const FitResult& r = account.entries.back().result;
     if (test.role != Role::fit || test.mode != "d2") continue;
-    for (const auto& [parameter, target] : {std::pair("max", gives.first), std::pair("beta", gives.second)}) {
-      const FitEstimate& e = r[parameter];
-      if (e.determined && e.stderr_) {
-        account.run_values[target].push_back({test.name, test.seed, curve.nu, e.value, *e.stderr_});
-      } else {
-        account.left_out.push_back(
-            {test.name, test.role,
-             "shear." + name_of(target) + ": not determined by this test: " + e.reason});
-      }
-    }
+    take_saturation(account, test, curve, r, gives.first, selection);
+    take_rate(account, test, curve, r["beta"], gives.second);
   }
 }
 
-void fit_density(Account& account, ShearQuantity quantity, double nu_c_error, const Reference& reference) {
+/// Which number each run gives to a law over volume fraction, in words.
+std::string density_rule(const std::vector<RunValue>& values, bool rate, const Selection& selection) {
+  if (rate) return "beta of each d2 test whose own fit determines it, all of one weight";
+  std::string means;
+  for (const RunValue& v : values) {
+    if (v.steady_mean) means += (means.empty() ? "" : ", ") + v.test;
+  }
+  return "max of each d2 test whose own fit determines beta and max, else " + steady_mean_rule(selection) +
+         " (" + (means.empty() ? "no test" : means) + "); weighted by its standard error";
+}
+
+void fit_density(Account& account, ShearQuantity quantity, double nu_c_error, const Reference& reference,
+                 const Selection& selection) {
   const bool rate = quantity == ShearQuantity::beta_s || quantity == ShearQuantity::beta_F;
   const bool stress = quantity == ShearQuantity::s_max || quantity == ShearQuantity::beta_s;
   const std::vector<RunValue>& values = account.run_values[quantity];
@@ -179,8 +255,7 @@ void fit_density(Account& account, ShearQuantity quantity, double nu_c_error, co
   entry.y_name = name_of(quantity);
   entry.y_label =
       std::string(rate ? "rate β of the " : "saturation of the ") + (stress ? "stress ratio" : "fabric");
-  entry.selection = std::string("one point per d2 test, where its own fit determines it, ") +
-                    (rate ? "all of one weight" : "weighted by its standard error");
+  entry.selection = density_rule(values, rate, selection);
   entry.thesis = reference.thesis_shear(name_of(quantity));
   entry.problem =
       density_problem(quantity, values, account.nu_c, nu_c_error, reference.shear(name_of(quantity)));
@@ -195,6 +270,7 @@ void fit_density(Account& account, ShearQuantity quantity, double nu_c_error, co
 Account fit_all(const RecordFolder& folder, const Reference& reference, const Selection& selection) {
   Account account;
   account.left_out = folder.left_out;
+  account.narrow_P_min = narrow_pressure * selection.P_min;
   for (const TestRecord& test : folder.tests) {
     if (test.mode == "mixed" || test.mode == "components") {
       account.left_out.push_back({test.name, test.role, "its path is not of one mode (iso, uni, d2, d3)"});
@@ -207,12 +283,14 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
   const FitEstimate& nu_c = account.packing.at("iso").pressure["nu_c"];
   account.nu_c_fitted = account.packing.at("iso").pressure.ran && !nu_c.held && nu_c.determined;
   const KnownValues known = reference.packing("iso");
-  account.nu_c = account.nu_c_fitted ? nu_c.value : known.contains("nu_c") ? known.at("nu_c") : thesis_nu_c;
-  const double nu_c_error = account.nu_c_fitted ? nu_c.stderr_.value_or(0) : 0;
+  const KnownValue thesis = known.contains("nu_c") ? known.at("nu_c") : KnownValue(thesis_nu_c);
+  account.nu_c = account.nu_c_fitted ? nu_c.value : thesis.value;
+  const double nu_c_error = account.nu_c_fitted ? nu_c.stderr_.value_or(0) : thesis.error;
   for (const TestRecord& test : folder.tests) {
     if (is_shear(test.mode)) fit_shear_test(account, test, selection);
   }
-  for (const ShearQuantity quantity : shear_quantities) fit_density(account, quantity, nu_c_error, reference);
+  for (const ShearQuantity quantity : shear_quantities)
+    fit_density(account, quantity, nu_c_error, reference, selection);
   return account;
 }
 

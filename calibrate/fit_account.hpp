@@ -14,9 +14,11 @@
 namespace grainlaw::calibrate {
 
 struct Account {
-  std::vector<FitEntry> entries;                              ///< all fits, in the order of fits.json
-  std::vector<LeftOut> left_out;                              ///< records that a fit did not take, and why
-  std::map<std::string, PackingFit> packing;                  ///< by mode, role fit only
+  std::vector<FitEntry> entries;              ///< all fits, in the order of fits.json
+  std::vector<LeftOut> left_out;              ///< records that a fit did not take, and why
+  std::map<std::string, PackingFit> packing;  ///< by mode, role fit only
+  std::map<std::string, PackingFit> narrow;   ///< the same from narrow_P_min on, where that leaves out rows
+  double narrow_P_min = 0;
   std::map<ShearQuantity, FitResult> density;                 ///< Eq. 2.20 through the d2 tests of role fit
   std::map<ShearQuantity, std::vector<RunValue>> run_values;  ///< what it was fitted to
   double nu_c = 0;                                            ///< of Eq. 2.20: that of the isotropic pressure

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
 
 #include "grainlaw/calibrate/fit_errors.hpp"
 #include "grainlaw/calibrate/fit_minimise.hpp"
+#include "grainlaw/calibrate/fit_scatter.hpp"
 
 namespace grainlaw::calibrate {
 namespace {
@@ -21,14 +21,6 @@ using Eigen::VectorXd;
 constexpr double null_fraction = 1e-9;
 /// A parameter takes part in a singular direction from this component on.
 constexpr double takes_part = 0.1;
-
-std::vector<FitPoint> all_points(const FitProblem& problem) {
-  std::vector<FitPoint> points;
-  for (const FitSeries& series : problem.series) {
-    points.insert(points.end(), series.points.begin(), series.points.end());
-  }
-  return points;
-}
 
 /// Weighted residuals and their Jacobian by all parameters, columns multiplied by the parameters' scales.
 struct Linearised {
@@ -138,45 +130,6 @@ Errors errors_of(const FitProblem& problem, const MatrixXd& jacobian, const Vect
   return out;
 }
 
-/// Series by group, if there are at least three groups: then their estimates are independent.
-std::map<std::string, std::vector<FitSeries>> independent_groups(const FitProblem& problem) {
-  std::map<std::string, std::vector<FitSeries>> groups;
-  for (const FitSeries& series : problem.series) {
-    if (!series.points.empty()) groups[series.group].push_back(series);
-  }
-  if (problem.points != Points::rows || groups.size() < 3) groups.clear();
-  return groups;
-}
-
-/// Standard errors of the mean of the groups' own estimates (of all parameters), where each group alone has
-/// enough points and its fit converges; else empty.
-std::vector<double> scatter_over_groups(const FitProblem& problem, const std::vector<std::size_t>& free,
-                                        const std::vector<double>& best, std::size_t& count) {
-  const auto groups = independent_groups(problem);
-  std::vector<std::vector<double>> estimates;
-  FitProblem alone = problem;
-  alone.starts = 1;
-  for (const auto& [name, series] : groups) {
-    alone.series = series;
-    const std::vector<double> weights(all_points(alone).size(), 1.0);
-    if (weights.size() <= free.size()) return {};
-    const Minimum minimum = minimise(alone, free, weights, best);
-    if (!minimum.converged) return {};
-    estimates.push_back(minimum.values);
-  }
-  if (estimates.empty()) return {};
-  count = estimates.size();
-  const auto n = static_cast<double>(count);
-  std::vector<double> errors(best.size());
-  for (const std::size_t i : free) {
-    double mean = 0, square = 0;
-    for (const auto& e : estimates) mean += e[i] / n;
-    for (const auto& e : estimates) square += (e[i] - mean) * (e[i] - mean);
-    errors[i] = std::sqrt(square / (n - 1) / n);
-  }
-  return errors;
-}
-
 std::string rounded(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
@@ -235,14 +188,15 @@ void attach_errors(const FitProblem& problem, const std::vector<std::size_t>& in
   result.n_effective = errors.n_effective;
   result.degrees_of_freedom = errors.degrees_of_freedom;
   VectorXd variance = errors.covariance.diagonal();
-  std::size_t groups = 0;
-  const std::vector<double> scatter =
-      scatter_over_groups(problem, free_parameters(problem), result.values(), groups);
-  if (!scatter.empty()) {
+  const Scatter scatter = scatter_over_groups(problem, free_parameters(problem), result.values());
+  if (!scatter.errors.empty()) {
     result.stderr_from = "scatter over seeds";
-    result.degrees_of_freedom = static_cast<double>(groups - 1);
+    if (!scatter.clipped.empty())
+      result.stderr_from += " (a lower bound; at bounds: " + scatter.clipped + ")";
+    result.degrees_of_freedom = static_cast<double>(scatter.groups - 1);
     for (std::size_t j = 0; j < inner.size(); ++j) {
-      variance[static_cast<Index>(j)] = std::pow(scatter[inner[j]] / problem.parameters[inner[j]].scale, 2);
+      const double error = scatter.errors[inner[j]] / problem.parameters[inner[j]].scale;
+      variance[static_cast<Index>(j)] = error * error;
     }
   }
   variance += variance_from_held(problem, at.jacobian, jacobian);
@@ -253,9 +207,11 @@ void attach_errors(const FitProblem& problem, const std::vector<std::size_t>& in
     const double error = std::sqrt(variance[static_cast<Index>(j)]) * p.scale;
     e.stderr_ = error;
     e.interval95 = std::pair(e.value - t * error, e.value + t * error);
-    if (error <= p.scale) continue;
+    const double size = p.judged_by_value ? std::abs(e.value) : p.scale;
+    if (error <= size) continue;
     e.determined = false;
-    e.reason = "its standard error, " + rounded(error) + ", exceeds its natural size, " + rounded(p.scale);
+    e.reason = "its standard error, " + rounded(error) + ", exceeds its " +
+               (p.judged_by_value ? "value, " : "natural size, ") + rounded(size);
   }
 }
 
@@ -280,8 +236,7 @@ std::vector<std::size_t> estimates_of(const FitProblem& problem, const Minimum& 
     e.value = minimum.values[i];
     e.held = p.held;
     if (p.held && p.held_error > 0) e.stderr_ = p.held_error;
-    const double margin = 1e-7 * (p.high - p.low);
-    const bool low = e.value <= p.low + margin, high = e.value >= p.high - margin;
+    const bool low = at_low(p, e.value), high = at_high(p, e.value);
     e.at_bound = !p.held && (low || high);
     e.determined = !e.at_bound || (low && p.low_is_natural);
     if (!e.determined) e.reason = "the fit runs into its bound " + rounded(low ? p.low : p.high);
@@ -292,6 +247,17 @@ std::vector<std::size_t> estimates_of(const FitProblem& problem, const Minimum& 
 }
 
 }  // namespace
+
+std::vector<FitPoint> all_points(const FitProblem& problem) {
+  std::vector<FitPoint> points;
+  for (const FitSeries& series : problem.series) {
+    points.insert(points.end(), series.points.begin(), series.points.end());
+  }
+  return points;
+}
+
+bool at_low(const FitParameter& p, double value) { return value <= p.low + 1e-7 * (p.high - p.low); }
+bool at_high(const FitParameter& p, double value) { return value >= p.high - 1e-7 * (p.high - p.low); }
 
 std::vector<std::size_t> free_parameters(const FitProblem& problem) {
   std::vector<std::size_t> free;

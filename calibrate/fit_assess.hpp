@@ -9,6 +9,13 @@
 
 namespace grainlaw::calibrate {
 
+/// Series after series.
+std::vector<FitPoint> all_points(const FitProblem& problem);
+
+/// True where `value` rests on a bound, to a tiny fraction of their distance.
+bool at_low(const FitParameter& p, double value);
+bool at_high(const FitParameter& p, double value);
+
 /// The parameters that are not held.
 std::vector<std::size_t> free_parameters(const FitProblem& problem);
 

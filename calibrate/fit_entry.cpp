@@ -20,13 +20,13 @@ Json parameter_json(const FitEntry& entry, std::size_t i) {
             {"unit", e.unit}};
   if (e.stderr_) json["stderr"] = number_or_null(*e.stderr_);
   if (const auto known = entry.thesis.find(e.name); known != entry.thesis.end())
-    json["thesis"] = known->second;
+    json["thesis"] = known->second.value;
   json["at_bound"] = e.at_bound;
   json["determined"] = e.determined;
   json["held"] = e.held;
   json["interval95"] = nullptr;
   if (e.interval95) json["interval95"] = {e.interval95->first, e.interval95->second};
-  if (!entry.shift.empty() && !e.held) json["shift_at_twice_P_min"] = number_or_null(entry.shift[i]);
+  if (!entry.shift.empty() && !e.held) json["shift_at_four_P_min"] = number_or_null(entry.shift[i]);
   return json;
 }
 
@@ -77,7 +77,7 @@ Json thesis_curve(const FitEntry& entry) {
   for (const FitEstimate& e : entry.result.parameters) {
     const auto known = entry.thesis.find(e.name);
     if (known == entry.thesis.end()) return nullptr;
-    p.push_back(known->second);
+    p.push_back(known->second.value);
   }
   return curve_json(entry, p);
 }

@@ -26,9 +26,9 @@ struct FitEntry {
   KnownValues thesis;                ///< the thesis's values by parameter name, where it has them
   std::optional<double> curve_from;  ///< the curve begins here, if the data begin later
   std::function<double(double)>
-      known_at;  ///< the law's second measured quantity over x, for the curve; may be empty
-  std::vector<double>
-      shift;  ///< of each parameter where the selection starts at twice the pressure; may be empty
+      known_at;               ///< the law's second measured quantity over x, for the curve; may be empty
+  std::vector<double> shift;  ///< of each parameter where the selection starts at four times the pressure;
+                              ///< NaN where that leaves out no row; may be empty
 };
 
 /// docs/fits.md lists the keys. A number that is not known is null.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "grainlaw/dem/scene.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/json.hpp"
 
@@ -33,6 +34,19 @@ void split_name(TestRecord& test) {
   test.seed = seeded ? test.name.substr(at + 2) : test.name;
 }
 
+/// Where the scene says how many rows a segment has, the table must have them all: one that was cut between
+/// two lines looks whole.
+void check_row_count(const Json& scene, const Path& path, const Record& rows, const fs::path& table) {
+  if (!scene.contains("measure") || !scene["measure"].contains("rows")) return;
+  dem::Scene wanted;
+  wanted.path = path;
+  wanted.measure.rows = scene["measure"]["rows"].get<std::int64_t>();
+  if (rows.rows() != wanted.record_rows())
+    throw Error(table.string(), "",
+                "must have " + std::to_string(wanted.record_rows()) + " rows as its scene says, got " +
+                    std::to_string(rows.rows()) + ": it is cut short or of another scene");
+}
+
 TestRecord read_record(const fs::path& dir, Role role) {
   TestRecord test;
   test.name = dir.filename().string();
@@ -40,11 +54,13 @@ TestRecord read_record(const fs::path& dir, Role role) {
   test.dir = dir;
   split_name(test);
   const fs::path scene = dir / "scene.json", table = dir / "record.csv";
-  Reader reader(load_json(scene), scene.string());
+  const Json json = load_json(scene);
+  Reader reader(json, scene.string());
   test.material = Material::read(reader.object("material"));
   test.path = Path::read(reader.object("path"));
   test.mode = mode_of(test.path);
   test.rows = Record::read_csv(table, needed_columns);
+  check_row_count(json, test.path, test.rows, table);
   for (const char* column : {"segment", "eps_vol", "eps_dev", "nu", "P"}) {
     for (const double value : test.rows[column]) {
       if (std::isnan(value))

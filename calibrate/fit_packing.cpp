@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "grainlaw/calibrate/fit_law.hpp"
 
@@ -38,11 +37,6 @@ struct PressureLaw {  // p0, gamma_p, nu_c; the measured C is at.known
   }
 };
 
-std::optional<double> find(const KnownValues& known, const std::string& name) {
-  const auto found = known.find(name);
-  return found == known.end() ? std::nullopt : std::optional(found->second);
-}
-
 template <class Take>
 std::vector<FitSeries> points_of(const std::vector<PackingSeries>& series, Take take) {
   std::vector<FitSeries> out;
@@ -70,8 +64,18 @@ FitParameter parameter(const KnownValues& known, const std::string& name, double
   p.low = low;
   p.high = high;
   p.scale = scale;
-  p.fallback = find(known, name);
+  if (const auto found = known.find(name); found != known.end()) {
+    p.fallback = found->second.value;
+    p.fallback_error = found->second.error;
+  }
   p.hold_order = hold_order;
+  return p;
+}
+
+/// The volume fraction at which a law begins, up to `high`, just below the lowest one of the data.
+FitParameter jamming(const KnownValues& known, const std::string& name, double lowest, double high) {
+  FitParameter p = parameter(known, name, lowest - 0.005, lowest - 0.15, high, 0.02, 1);
+  p.bounds_follow_data = true;
   return p;
 }
 
@@ -90,9 +94,9 @@ FitProblem contacts_problem(const std::vector<PackingSeries>& series, Points poi
   problem.starts = starts;
   FitParameter C0 = parameter(known, "C0", 6, 3, 9, 1, 3);
   C0.held = !free_C0;
-  problem.parameters = {
-      C0, parameter(known, "C1", 8, 0.5, 40, 8, 2), parameter(known, "alpha", 0.6, 0.15, 2, 0.5, 0),
-      parameter(known, "nu_c_contacts", lowest - 0.005, lowest - 0.15, lowest * (1 - 1e-10), 0.02, 1)};
+  problem.parameters = {C0, parameter(known, "C1", 8, 0.5, 40, 8, 2),
+                        parameter(known, "alpha", 0.6, 0.15, 2, 0.5, 0),
+                        jamming(known, "nu_c_contacts", lowest, lowest * (1 - 1e-10))};
   return problem;
 }
 
@@ -127,7 +131,7 @@ FitProblem pressure_problem(const std::vector<PackingSeries>& series, Points poi
   problem.starts = starts;
   problem.parameters = {parameter(known, "p0", 0.042, 1e-3, 0.5, 0.04, 2),
                         parameter(known, "gamma_p", 0.05, -5, 5, 1, 0),
-                        parameter(known, "nu_c", lowest - 0.005, lowest - 0.15, lowest, 0.02, 1)};
+                        jamming(known, "nu_c", lowest, lowest)};
   return problem;
 }
 

@@ -10,8 +10,14 @@
 
 namespace grainlaw::calibrate {
 
+/// What somebody else found for a parameter.
+struct KnownValue {
+  double value = 0;
+  double error = 0;  ///< standard error; 0: none is stated
+  KnownValue(double known, double with_error = 0) : value(known), error(with_error) {}
+};
 /// Values to hold a parameter at if the data cannot determine it, by name; empty where nobody knows any.
-using KnownValues = std::map<std::string, double>;
+using KnownValues = std::map<std::string, KnownValue>;
 
 /// A measured state, all numbers over one volume fraction. Errors are standard errors, 0 where unknown.
 struct PackingState {

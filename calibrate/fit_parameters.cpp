@@ -42,7 +42,7 @@ const Keys<MemoryLaws> memory_keys{
 
 std::optional<double> find(const KnownValues& known, const std::string& name) {
   const auto found = known.find(name);
-  return found == known.end() ? std::nullopt : std::optional(found->second);
+  return found == known.end() ? std::nullopt : std::optional(found->second.value);
 }
 
 Parameter assumed(double value, const std::string& name, const std::string& note, const KnownValues& thesis) {
@@ -54,7 +54,8 @@ Parameter assumed(double value, const std::string& name, const std::string& note
   return p;
 }
 
-Parameter from_estimate(const FitEstimate& e, const KnownValues& thesis, const Reference& reference) {
+Parameter from_estimate(const FitEstimate& e, const KnownValues& thesis, const Reference& reference,
+                        const std::string& left_out_of_error) {
   Parameter p;
   p.value = e.value;
   p.stderr_ = e.stderr_;
@@ -67,8 +68,21 @@ Parameter from_estimate(const FitEstimate& e, const KnownValues& thesis, const R
     p.note = "not determined: " + e.reason;
   } else if (e.at_bound) {
     p.note = "rests on the bound of the law";
+  } else if (e.stderr_) {
+    p.note = left_out_of_error;
   }
   return p;
+}
+
+/// "its error leaves out that of alpha, ...", for the free parameters of a fit in which others are held at
+/// values without an error; else empty.
+std::string left_out_of_errors(const FitResult& fit, const Reference& reference) {
+  std::string names;
+  for (const FitEstimate& e : fit.parameters) {
+    if (e.held && !e.determined && !e.stderr_) names += (names.empty() ? "" : ", ") + e.name;
+  }
+  if (names.empty()) return "";
+  return "its error leaves out that of " + names + ", held at " + reference.whose() + ", which has none";
 }
 
 /// A parameter that is open, although free: its law cannot be used as it stands.
@@ -94,7 +108,7 @@ bool fill(Group& group, const Keys<Group>& keys, const FitResult& fit, const Kno
           assumed(*find(fallback, name), name,
                   reference.whose() + ": " + open->name + " is not determined: " + open->reason, thesis);
     } else {
-      group.*member = from_estimate(e, thesis, reference);
+      group.*member = from_estimate(e, thesis, reference, left_out_of_errors(fit, reference));
     }
   }
   return true;
@@ -103,7 +117,10 @@ bool fill(Group& group, const Keys<Group>& keys, const FitResult& fit, const Kno
 template <class Group>
 KnownValues values_of(const Group& group, const Keys<Group>& keys) {
   KnownValues values;
-  for (const auto& [name, member] : keys) values.emplace(name, (group.*member).value);
+  for (const auto& [name, member] : keys) {
+    const Parameter& p = group.*member;
+    values.emplace(name, KnownValue(p.value, p.stderr_.value_or(0)));
+  }
   return values;
 }
 
@@ -163,11 +180,9 @@ KnownValues Reference::thesis_shear(const std::string& quantity) const {
 std::optional<ModuliLaws> Reference::moduli() const {
   if (!set_ || !set_->moduli) return std::nullopt;
   ModuliLaws moduli = *set_->moduli;
-  if (!same_material_) {
-    mark_as_other_material(moduli, moduli_keys, whose());
-    moduli.g3.value = fabric_size_factor(material_.w);
-    moduli.g3.note = "Eq. 3.8 for this w";
-  }
+  if (!same_material_) mark_as_other_material(moduli, moduli_keys, whose());
+  moduli.g3.value = fabric_size_factor(material_.w);
+  moduli.g3.note = "Eq. 3.8 for w = " + to_text(material_.w);
   return moduli;
 }
 

@@ -27,7 +27,8 @@ class Reference {
   /// The same, only where it is the thesis's value for this very material.
   KnownValues thesis_packing(const std::string& mode) const;
   KnownValues thesis_shear(const std::string& quantity) const;
-  /// The groups that no fit fills; source thesis, or assumed where the set is of another w.
+  /// The groups that no fit fills; source thesis, or assumed where the set is of another w. g3 is Eq. 3.8 for
+  /// the records' own w.
   std::optional<model::ModuliLaws> moduli() const;
   std::optional<model::MemoryLaws> memory() const;
   /// "the thesis's value", "the thesis's value for w = 3", to be used in notes.

@@ -119,7 +119,7 @@ FitResult fit(const FitProblem& problem) {
   const auto hold = [&](std::size_t i, const std::string& reason) {
     now.parameters[i].held = true;
     now.parameters[i].initial = *now.parameters[i].fallback;
-    now.parameters[i].held_error = 0;
+    now.parameters[i].held_error = now.parameters[i].fallback_error;
     held_for[i] = reason;
   };
   FitResult result;

@@ -22,13 +22,20 @@ struct FitParameter {
   double low = 0, high = 1;
   /// Natural size: the solver works on value/scale, and a standard error beyond it counts as not determined.
   double scale = 1;
+  /// No size is natural to it (a rate): not determined where the standard error exceeds the value itself.
+  bool judged_by_value = false;
+  /// The law ends at the lowest x of the data, and the bounds are counted from there: a fit to some of the
+  /// series has bounds of its own.
+  bool bounds_follow_data = false;
   /// The law itself ends at `low` (a saturation value cannot be negative), so that a fit may rest there.
   bool low_is_natural = false;
   /// Not fitted: stays at `initial`, whose standard error goes into the errors of the others.
   bool held = false;
   double held_error = 0;
-  /// Where to hold it if the data cannot determine it, and which one to hold first (the lowest).
+  /// Where to hold it if the data cannot determine it, with that value's own error (0: none is stated), and
+  /// which one to hold first (the lowest).
   std::optional<double> fallback;
+  double fallback_error = 0;
   int hold_order = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "grainlaw/calibrate/fit_errors.hpp"
+#include "grainlaw/calibrate/shear_projection.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::calibrate {
@@ -107,7 +108,7 @@ std::string steady_rule(const Selection& selection) {
 
 ShearCurve first_loading(const TestRecord& test, const std::string& quantity, const Selection& selection,
                          Counted& counted) {
-  ShearCurve curve{test.name, test.seed, 0, {}, {}};
+  ShearCurve curve{test.name, test.seed, 0, {}, {}, false};
   counted = {};
   const std::size_t leg = first_shear_leg(test);
   if (leg == test.legs.size()) {
@@ -115,10 +116,12 @@ ShearCurve first_loading(const TestRecord& test, const std::string& quantity, co
     return curve;
   }
   const Leg& ran = test.legs[leg];
+  const ShearColumn column = shear_column(test, leg, quantity);
+  curve.projected = column.projected;
   const double direction = ran.eps_dev[1] > ran.eps_dev[0] ? 1 : -1;
   double P = 0;
   for (const std::size_t row : rows_of_leg(test, leg)) {
-    const double value = test.rows[quantity][row];
+    const double value = column.values[row];
     ++(std::isfinite(value) ? counted.rows : counted.left_out);
     if (!std::isfinite(value)) continue;
     curve.strain.push_back(direction * (test.rows["eps_dev"][row] - ran.eps_dev[0]));
@@ -139,6 +142,20 @@ ShearCurve first_loading(const TestRecord& test, const std::string& quantity, co
 
 std::string loading_rule(const Selection& selection) {
   return "rows of the first shear leg, of runs whose mean P there >= " + number(selection.P_min);
+}
+
+std::optional<RunValue> steady_mean(const ShearCurve& curve, const Selection& selection) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < curve.strain.size(); ++i) {
+    if (curve.strain[i] >= selection.steady_from) values.push_back(curve.value[i]);
+  }
+  if (values.size() < selection.steady_rows) return std::nullopt;
+  const SeriesMean mean = mean_of_series(values);
+  return RunValue{curve.test, curve.group, curve.nu, mean.mean, mean.error, true};
+}
+
+std::string steady_mean_rule(const Selection& selection) {
+  return "the mean over the rows with |eps_dev| >= " + number(selection.steady_from);
 }
 
 }  // namespace grainlaw::calibrate

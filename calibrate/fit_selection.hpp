@@ -40,9 +40,15 @@ std::string unloading_rule(const Selection& selection);
 PackingSeries steady_state(const TestRecord& test, const Selection& selection, Counted& counted);
 std::string steady_rule(const Selection& selection);
 
-/// s_dev or F_dev ("s_dev", "F_dev") over the first shear leg, counted positive along it.
+/// The stress ratio or the fabric ("s_dev", "F_dev") over the first shear leg, counted positive along it: the
+/// projection on its deviator where the record has components.
 ShearCurve first_loading(const TestRecord& test, const std::string& quantity, const Selection& selection,
                          Counted& counted);
 std::string loading_rule(const Selection& selection);
+
+/// Mean of the rows with |eps_dev| >= steady_from, with its error from their autocorrelation; none if they
+/// are too few.
+std::optional<RunValue> steady_mean(const ShearCurve& curve, const Selection& selection);
+std::string steady_mean_rule(const Selection& selection);
 
 }  // namespace grainlaw::calibrate

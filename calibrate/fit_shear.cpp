@@ -45,7 +45,10 @@ FitParameter parameter(const std::string& name, double initial, double low, doub
 }
 
 void hold_if_open(FitParameter& p, const KnownValues& known, int order) {
-  if (const auto found = known.find(p.name); found != known.end()) p.fallback = found->second;
+  if (const auto found = known.find(p.name); found != known.end()) {
+    p.fallback = found->second.value;
+    p.fallback_error = found->second.error;
+  }
   p.hold_order = order;
 }
 
@@ -85,6 +88,7 @@ FitProblem approach_problem(const ShearCurve& curve) {
   problem.starts = 8;
   problem.parameters = {parameter("max", 0.15, 0, 1, 0.1), parameter("initial", 0, -0.5, 0.5, 0.1),
                         parameter("beta", 40, 1, 2000, 100)};
+  problem.parameters.back().judged_by_value = true;
   return problem;
 }
 

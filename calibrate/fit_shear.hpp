@@ -17,6 +17,7 @@ struct ShearCurve {
   std::string group;  ///< its seed
   double nu = 0;
   std::vector<double> strain, value;
+  bool projected = false;  ///< on the deviator of the mode (shear_column); false: the record's signed column
 };
 
 /// y = max - (max - initial) exp(-beta e). Parameters max, initial, beta.
@@ -27,6 +28,7 @@ FitResult fit_approach(const ShearCurve& curve);
 struct RunValue {
   std::string test, group;
   double nu = 0, value = 0, error = 0;
+  bool steady_mean = false;  ///< the mean at large strain; false: a parameter of the run's own fit
 };
 
 /// The quantities that Eq. 2.20 is fitted to.

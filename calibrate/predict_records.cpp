@@ -1,5 +1,6 @@
 #include "grainlaw/calibrate/predict_records.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -19,15 +20,30 @@ constexpr model::Form forms[] = {model::Form::reduced_closed, model::Form::reduc
 /// What a prediction and a record have in common and the law claims to know.
 const std::vector<std::string> compared{"P", "sigma_dev", "s_dev", "F_v", "F_dev", "C", "C_star", "f_NR"};
 
+const std::vector<double>& column_or_none(const Record& record, const std::string& column) {
+  static const std::vector<double> none;
+  return record.has(column) ? record[column] : none;
+}
+
 Json errors_of(const Record& predicted, const Record& measured) {
   Json errors = Json::object();
   for (const std::string& column : compared) {
+    const double distance =
+        relative_distance(column_or_none(predicted, column), column_or_none(measured, column));
     errors[column] = nullptr;
-    if (!predicted.has(column) || !measured.has(column)) continue;
-    const double distance = relative_distance(predicted[column], measured[column]);
     if (std::isfinite(distance)) errors[column] = distance;
   }
   return errors;
+}
+
+/// How many rows stand behind each of these errors, and how many do not.
+Json rows_of(const Record& predicted, const Record& measured) {
+  Json rows = Json::object();
+  for (const std::string& column : compared) {
+    const RowCount count = count_rows(column_or_none(predicted, column), column_or_none(measured, column));
+    rows[column] = {{"compared", count.compared}, {"missed", count.missed}};
+  }
+  return rows;
 }
 
 /// Path of the test, to be started where the record starts. Nothing else of the record is used.
@@ -62,6 +78,7 @@ Json predict_one(const TestRecord& test, model::Form form, const model::Paramete
   const bool walked = prediction.record.rows() > 0;
   json["start"] = walked ? prediction.start : Json();
   json["errors"] = errors_of(prediction.record, test.rows);
+  json["rows"] = rows_of(prediction.record, test.rows);
   json["warnings"] = prediction.warnings;
   json["file"] = nullptr;
   json["record"] = fs::relative(test.dir / "record.csv", dir).generic_string();
@@ -84,6 +101,17 @@ double relative_distance(const std::vector<double>& predicted, const std::vector
   return size > 0 ? std::sqrt(difference / size) : std::numeric_limits<double>::quiet_NaN();
 }
 
+RowCount count_rows(const std::vector<double>& predicted, const std::vector<double>& measured) {
+  RowCount count;
+  for (std::size_t i = 0; i < std::max(predicted.size(), measured.size()); ++i) {
+    const bool here = i < predicted.size() && std::isfinite(predicted[i]);
+    const bool there = i < measured.size() && std::isfinite(measured[i]);
+    count.compared += here && there ? 1 : 0;
+    count.missed += here != there ? 1 : 0;
+  }
+  return count;
+}
+
 Json predict_records(const fs::path& dir, const model::ParameterSet& parameters) {
   const RecordFolder folder = read_records(dir);
   Json predictions = Json::array();
@@ -93,7 +121,7 @@ Json predict_records(const fs::path& dir, const model::ParameterSet& parameters)
     if (test.role != Role::predict) continue;
     for (const model::Form form : forms) predictions.push_back(predict_one(test, form, parameters, dir));
   }
-  Json out{{"predictions", predictions}};
+  Json out{{"parameters_digest", digest(parameters.to_json().dump(2) + "\n")}, {"predictions", predictions}};
   write_file(dir / "predictions.json", out.dump(2) + "\n");
   return out;
 }

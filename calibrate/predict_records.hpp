@@ -2,6 +2,7 @@
 // The law follows the path that the test ran, from the volume fraction it started at, in every form.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <vector>
 
@@ -20,5 +21,12 @@ Json predict_records(const std::filesystem::path& dir, const model::ParameterSet
 /// Relative L2 distance over the rows where both are defined: sqrt(sum (a - b)^2 / sum b^2), b the measured
 /// one. NaN where there is no such row or b vanishes.
 double relative_distance(const std::vector<double>& predicted, const std::vector<double>& measured);
+
+/// Rows that such a distance takes, and rows where only one of the two is defined (one that is shorter, or
+/// missing, is undefined there).
+struct RowCount {
+  std::size_t compared = 0, missed = 0;
+};
+RowCount count_rows(const std::vector<double>& predicted, const std::vector<double>& measured);
 
 }  // namespace grainlaw::calibrate

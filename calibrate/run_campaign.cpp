@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "grainlaw/calibrate/campaign_schedule.hpp"
+#include "grainlaw/calibrate/kept_record.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 
@@ -92,14 +93,21 @@ class Runner {
   std::deque<Ending> endings_;
 };
 
-/// Removes what an interrupted run left; finds the records that are there.
+/// Removes what an interrupted run left; finds the records that are there, and checks all that is to be gone
+/// on with.
 void Runner::clear() {
   for (std::size_t i = 0; i < jobs_.size(); ++i) {
     fs::remove_all(folder_.part(jobs_[i].record));
     if (!folder_.has_record(jobs_[i].record)) continue;
+    check_kept_record(folder_.record(jobs_[i].record), jobs_[i].scene);
     schedule_.reuse(i);
     reused_work_ += jobs_[i].particle_steps;
     ++result_.reused;
+  }
+  for (const Job& job : jobs_) {
+    if (!job.needs || folder_.has_record(job.record)) continue;
+    const std::string& producer = jobs_[*job.needs].record;
+    if (folder_.has_record(producer)) check_kept_snapshots(folder_.record(producer));
   }
 }
 

@@ -15,7 +15,9 @@
 #include "grainlaw/calibrate/campaign.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
+#include "grainlaw/element/path.hpp"
 #include "grainlaw/element/record.hpp"
+#include "grainlaw/element/tensor.hpp"
 #include "grainlaw/model/packing_laws.hpp"
 #include "grainlaw/model/parameters.hpp"
 #include "grainlaw/model/saturation.hpp"
@@ -127,6 +129,34 @@ inline void write_record(const std::filesystem::path& dir, const std::string& pa
     record.append({r.segment, r.eps_vol, r.eps_dev, r.nu, r.P, r.s_dev * r.P, r.s_dev, 1.22475 * r.nu * r.C,
                    r.F_dev, r.C, r.C_star, r.f_NR, std::numeric_limits<double>::quiet_NaN(),
                    r.P > 0 ? 1e-6 : 1e3});
+  }
+  record.write_csv(dir / "record.csv");
+}
+
+/// Gives the record `dir` the diagonal components of stress and fabric: those of s_dev and F_dev along the
+/// deviator `axis`, and beside it a deviator across, which is none of the mode's but adds to sqrt(3 J2). The
+/// columns s_dev and F_dev become that sqrt(3 J2), with the sign of what is along.
+inline void add_components(const std::filesystem::path& dir, const Strain3& axis, const Strain3& across,
+                           double size) {
+  const Record old = Record::read_csv(dir / "record.csv");
+  std::vector<std::string> names = old.columns();
+  for (const char* name : {"sxx", "syy", "szz", "Fxx", "Fyy", "Fzz"}) names.emplace_back(name);
+  Record record(names);
+  for (std::size_t i = 0; i < old.rows(); ++i) {
+    std::vector<double> row;
+    for (const std::string& name : old.columns()) row.push_back(old[name][i]);
+    const double P = old["P"][i], F = old["F_v"][i] / 3;
+    const auto component = [&](double along, std::size_t k) { return along * axis[k] + size * across[k]; };
+    const double s = old["s_dev"][i], f = old["F_dev"][i];
+    for (std::size_t k = 0; k < 3; ++k) row.push_back(P * (1 + component(s, k)));
+    for (std::size_t k = 0; k < 3; ++k) row.push_back(F + component(f, k));
+    record.append(row);
+    const auto rectified = [&](double along) {
+      const Sym6 q{component(along, 0), component(along, 1), component(along, 2), 0, 0, 0};
+      return std::copysign(deviator_magnitude(q), along);
+    };
+    record["s_dev"][i] = rectified(s);
+    record["F_dev"][i] = rectified(f);
   }
   record.write_csv(dir / "record.csv");
 }

@@ -107,6 +107,20 @@ TEST(FitProblem, SingularDirectionIsReportedAndTheRestGoesOn) {
   EXPECT_NEAR(r.value("u"), 0.5, 1e-3);
 }
 
+TEST(FitProblem, AParameterWithoutANaturalSizeIsJudgedByItsValue) {
+  // Slopes of 50 and 0.1, both with an error of about 0.3.
+  for (const double slope : {50.0, 0.1}) {
+    FitProblem problem =
+        line_through({{0, 0}, {1, slope + 1}, {2, 2 * slope - 1}, {3, 3 * slope + 1}, {4, 4 * slope}});
+    problem.points = Points::runs;
+    problem.parameters[1].scale = 0.2;
+    EXPECT_FALSE(fit(problem)["b"].determined) << "by a natural size of 0.2";
+    problem.parameters[1].judged_by_value = true;
+    const FitEstimate b = fit(problem)["b"];
+    EXPECT_EQ(b.determined, slope == 50) << b.value << " +- " << *b.stderr_;
+  }
+}
+
 TEST(FitProblem, BoundsAreKeptAndReported) {
   FitProblem problem = line_through({{0, 5}, {1, 6}, {2, 7.1}, {3, 8}});
   problem.parameters[0].high = 4;

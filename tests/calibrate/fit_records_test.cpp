@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "fit_fixture.hpp"
+#include "grainlaw/calibrate/fit_account.hpp"
+#include "grainlaw/calibrate/fit_checks.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::calibrate {
@@ -310,6 +312,127 @@ TEST_F(FitRecords, ThreeSeedsGiveTheirScatter) {
   // p0 of the seeds: 1, 0.99, 1.01 times the thesis's, so a standard error of 1 %/sqrt(3).
   const model::Parameter& p0 = out.parameters.isotropic.at("iso").p0;
   EXPECT_NEAR(*p0.stderr_ / p0.value, 0.01 / std::sqrt(3.0), 1e-5);
+}
+
+double value_of(const Json& fit, const std::string& parameter) {
+  for (const Json& p : fit.at("parameters")) {
+    if (p.at("name") == parameter) return p.at("value").get<double>();
+  }
+  throw std::runtime_error("no parameter " + parameter);
+}
+
+constexpr Strain3 d2_axis{-1 / 1.7320508075688772, 1 / 1.7320508075688772, 0},
+    d3_axis{-1. / 3, -1. / 3, 2. / 3};
+
+TEST_F(FitRecords, FitTheStressAndFabricAlongTheMode) {
+  // sqrt(3 J2) of these records is larger, since they deviate in another direction too.
+  const model::ShearLaws& truth = *thesis_.set().shear;
+  add_components(record("d2-0.71-s1"), d2_axis, d3_axis, 0.08);
+  add_components(record("d3-0.7-s1"), d3_axis, d2_axis, 0.08);
+  const FitOutput out = fitted();
+  for (const auto& [name, nu] : {std::pair("d2-0.71-s1", 0.71), std::pair("d3-0.7-s1", 0.7)}) {
+    const Json stress = entry_of(out, std::string(name) + ".s_dev");
+    const Json fabric = entry_of(out, std::string(name) + ".F_dev");
+    EXPECT_NEAR(value_of(stress, "max"), model::saturation(truth.s_max->values(), nu), 1e-6);
+    EXPECT_NEAR(value_of(stress, "initial"), 0.01, 1e-6);
+    EXPECT_NEAR(value_of(stress, "beta"), model::saturation(truth.beta_s->values(), nu), 1e-3);
+    EXPECT_NEAR(value_of(fabric, "max"), model::saturation(truth.F_max->values(), nu), 1e-6);
+    EXPECT_NEAR(value_of(fabric, "beta"), model::saturation(truth.beta_F->values(), nu), 1e-3);
+    EXPECT_THAT(stress.at("selection").get<std::string>(), HasSubstr("projection of sxx, syy, szz"));
+    EXPECT_THAT(fabric.at("y").at("label").get<std::string>(), HasSubstr("along the mode"));
+  }
+}
+
+TEST_F(FitRecords, WithoutComponentsFitTheSignedColumnsAndSaySo) {
+  const Json stress = entry_of(fitted(), "d2-0.71-s1.s_dev");
+  EXPECT_THAT(stress.at("selection").get<std::string>(), HasSubstr("signed column s_dev"));
+  EXPECT_THAT(stress.at("y").at("label").get<std::string>(), HasSubstr("signed"));
+}
+
+TEST_F(FitRecords, ARunThatHardlyRelaxesGivesItsSteadyMeanAndNoRate) {
+  // A line is the beginning of any exponential: the rate goes to its bound, and max to an extrapolation.
+  std::vector<Row> rows = thesis_.shear("d2", 0.74);
+  for (Row& row : rows) row.s_dev = 0.14 + 0.02 * row.eps_dev;
+  write_record(record("d2-0.74-s1"), path_json("d2"), rows);
+  const FitOutput out = fitted();
+  EXPECT_GT(value_of(entry_of(out, "d2-0.74-s1.s_dev"), "max"), 0.155);
+  const Json s_max = entry_of(out, "shear.s_max"), beta_s = entry_of(out, "shear.beta_s");
+  EXPECT_THAT(s_max.at("selection").get<std::string>(), HasSubstr("(d2-0.74-s1)"));
+  double steady = 0;
+  for (const Json& point : s_max.at("data")) {
+    if (point.at("test") == "d2-0.74-s1") steady = point.at("y")[0].get<double>();
+  }
+  EXPECT_NEAR(steady, 0.14 + 0.02 * (0.152 + 0.4) / 2, 1e-9);  // rows from 0.152 to 0.4
+  EXPECT_EQ(s_max.at("n"), d2_densities.size());
+  EXPECT_EQ(beta_s.at("n"), d2_densities.size() - 1);
+}
+
+TEST_F(FitRecords, SayThatTheErrorLeavesOutThatOfAHeldParameter) {
+  for (const double nu : {0.69, 0.71, 0.74, 0.77})
+    std::filesystem::remove_all(record("d2-" + to_text(nu) + "-s1"));
+  write_record(record("d2-0.8-s1"), path_json("d2"), thesis_.shear("d2", 0.79));
+  std::filesystem::remove(dir() / "campaign.json");  // more runs at the same two densities
+  write_record(record("d2-0.8-s2"), path_json("d2"), thesis_.shear("d2", 0.79));
+  write_record(record("d2-0.675-s2"), path_json("d2"), thesis_.shear("d2", 0.675));
+  const FitOutput out = fitted();
+  EXPECT_THAT(out.parameters.shear->s_max->Q_v.note,
+              HasSubstr("its error leaves out that of alpha, held at the thesis's value, which has none"));
+  EXPECT_EQ(out.parameters.isotropic.at("iso").p0.note, "");
+}
+
+TEST_F(FitRecords, TellHowFarTheLowestPressureMoves) {
+  // Contacts that leave their law below P = 8e-4.
+  std::vector<Row> rows = thesis_.cycle("iso", 400);
+  for (Row& row : rows) row.C_star += row.P < 8e-4 ? 0.05 : 0;
+  write_record(record("iso-s1"), path_json("iso"), rows);
+  const FitOutput out = fitted();
+  const Json& C0 = entry_of(out, "isotropic.iso.C_star_free_C0").at("parameters")[0];
+  const double shift = C0.at("shift_at_four_P_min").get<double>(),
+               narrow = C0.at("value").get<double>() + shift;
+  EXPECT_GT(std::abs(shift), 1e-3);
+  EXPECT_NEAR(narrow, 6, 1e-5);
+  EXPECT_THAT(out.fits.at("checks")[1].at("value").get<std::string>(),
+              AllOf(HasSubstr(" ± "), HasSubstr("; 6.00 from P >= 8e-04")));
+
+  // Without a row between 2e-4 and 8e-4, nothing has been tried.
+  std::erase_if(rows, [](const Row& row) { return row.P < 8e-4; });
+  write_record(record("iso-s1"), path_json("iso"), rows);
+  const FitOutput none = fitted();
+  const Json& alone = entry_of(none, "isotropic.iso.C_star_free_C0").at("parameters")[0];
+  ASSERT_TRUE(alone.contains("shift_at_four_P_min"));
+  EXPECT_TRUE(alone.at("shift_at_four_P_min").is_null());
+  EXPECT_THAT(none.fits.at("checks")[1].at("value").get<std::string>(), testing::Not(HasSubstr("from P")));
+}
+
+TEST_F(FitRecords, TheSizeFactorIsThatOfTheRecordsOwnSizes) {
+  const model::Parameter g3 = fitted().parameters.moduli->g3;
+  EXPECT_NEAR(g3.value, 1.22475, 1e-5);  // Eq. 3.8 at w = 3, which the thesis prints as 1.22
+  EXPECT_EQ(g3.thesis, 1.22);
+  EXPECT_THAT(g3.note, HasSubstr("Eq. 3.8 for w = 3"));
+}
+
+/// An account of nothing but the pressure laws of two modes.
+Account jamming_at(double iso, double d2, double error) {
+  Account account;
+  for (const auto& [mode, nu_c] : {std::pair("iso", iso), std::pair("d2", d2)}) {
+    FitEstimate at, p0;
+    at.name = "nu_c";
+    at.value = nu_c;
+    at.stderr_ = error;
+    p0.name = "p0";
+    account.packing[mode].pressure.parameters = {at, p0};
+    account.packing[mode].pressure.ran = true;
+  }
+  return account;
+}
+
+TEST(Checks, JammingOrderNeedsTwoStandardErrors) {
+  const auto order = [](const Account& account) { return physics_checks(account)[0]; };
+  EXPECT_EQ(order(jamming_at(0.665, 0.657, 2e-3)).at("holds"), true);
+  EXPECT_EQ(order(jamming_at(0.665, 0.657, 4e-3)).at("holds"), false);  // by 0.008 +- 0.0057
+  EXPECT_EQ(order(jamming_at(0.657, 0.665, 1e-3)).at("holds"), false);
+  EXPECT_THAT(order(jamming_at(0.665, 0.657, 3e-3)).at("value").get<std::string>(),
+              HasSubstr("by 0.0080 ± 0.0042"));
 }
 
 }  // namespace

@@ -200,6 +200,33 @@ TEST(ShearFits, ATestThatStopsTooSoonDoesNotDetermineItsSaturation) {
   EXPECT_FALSE(r["max"].reason.empty());
 }
 
+TEST(ShearFits, ARateWhoseErrorExceedsItIsNotDetermined) {
+  // A rise no larger than the noise: the error of its rate is below 100, and beyond the rate.
+  ShearCurve curve{"d2", "1", 0.75, {}, {}};
+  for (int i = 0; i < 60; ++i) {
+    curve.strain.push_back(0.4 * i / 59);
+    curve.value.push_back(model::approach(0.15, 0.14, 40, curve.strain.back()) +
+                          (i / 3 % 2 == 0 ? -0.01 : 0.01));
+  }
+  const FitEstimate beta = fit_approach(curve)["beta"];
+  EXPECT_FALSE(beta.determined) << beta.value << " +- " << beta.stderr_.value_or(0);
+  EXPECT_NE(beta.reason.find("exceeds its value"), std::string::npos) << beta.reason;
+}
+
+TEST(ShearFits, TheErrorOfAValueThatAlphaIsHeldAtGoesIntoTheOthers) {
+  const Row& row = table[0];
+  std::vector<RunValue> values;
+  for (const double nu : {0.70, 0.7004, 0.75}) values.push_back({"d2", "1", nu, value_of(row, nu), 0});
+  const auto error_of = [&](double alpha_error) {
+    const KnownValues known{{"Q_max", 0.1137}, {"Q_v", 0.09166}, {"alpha", {7.916, alpha_error}}};
+    const FitResult r = fit(density_problem(row.quantity, values, nu_c, 0, known));
+    EXPECT_EQ(r["alpha"].stderr_.value_or(0), alpha_error);
+    return *r["Q_v"].stderr_;
+  };
+  EXPECT_LT(error_of(0), 1e-6);
+  EXPECT_GT(error_of(0.5), 1e-3);
+}
+
 TEST(ShearFits, TrendSaysWhetherValuesFallWithoutAnyLaw) {
   std::vector<RunValue> values;
   for (const double nu : {0.68, 0.70, 0.72, 0.75})

@@ -131,6 +131,21 @@ TEST_F(PredictRecords, AFormThatCannotBePredictedIsListedWithTheReason) {
   EXPECT_EQ(find(out, "d3-0.7-s1", "reduced").at("status"), "ok");
 }
 
+TEST_F(PredictRecords, CountTheRowsThatOnlyOneSideDefines) {
+  // A packing that the law calls unjammed, and the record does not: no s_dev to compare.
+  std::vector<Row> rows = thesis_.shear("d3", 0.7);
+  const std::size_t all = rows.size();
+  for (std::size_t i = 0; i < 3; ++i) rows[i].s_dev = std::nan("");
+  for (Row& row : rows) row.nu = 0.7;
+  write_record(dir() / "records/d3-0.7-s1", path_json("d3"), rows);
+  const Json out = predict_records(dir(), thesis_.set());
+  const Json& count = find(out, "d3-0.7-s1", "reduced").at("rows");
+  EXPECT_EQ(count.at("s_dev").at("compared"), all - 3);
+  EXPECT_EQ(count.at("s_dev").at("missed"), 3);
+  EXPECT_EQ(count.at("P").at("compared"), all);
+  EXPECT_EQ(count.at("P").at("missed"), 0);
+}
+
 TEST_F(PredictRecords, NothingToPredictIsAnEmptyList) {
   std::filesystem::remove(dir() / "campaign.json");  // all records are for fits now
   EXPECT_TRUE(predict_records(dir(), thesis_.set()).at("predictions").empty());
@@ -142,6 +157,14 @@ TEST(RelativeDistance, IsTheL2NormOverRowsThatBothDefine) {
   EXPECT_DOUBLE_EQ(relative_distance({3, 4}, {0, 5}), std::sqrt(10.0) / 5);
   EXPECT_TRUE(std::isnan(relative_distance({1, 2}, {0, 0})));
   EXPECT_TRUE(std::isnan(relative_distance({}, {})));
+}
+
+TEST(CountRows, TakesARowThatIsNotThereAsUndefined) {
+  const double none = std::nan("");
+  const RowCount count = count_rows({4, none, none}, {3, 2, none, 7});
+  EXPECT_EQ(count.compared, 1u);
+  EXPECT_EQ(count.missed, 2u);
+  EXPECT_EQ(count_rows({}, {1, none}).missed, 1u);
 }
 
 }  // namespace

@@ -7,18 +7,22 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <thread>
 
 #include "campaign_examples.hpp"
+#include "grainlaw/dem/snapshot.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
+#include "grainlaw/element/record.hpp"
 
 namespace grainlaw::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
@@ -32,10 +36,19 @@ class RunCampaign : public testing::Test {
   void TearDown() override { fs::remove_all(dir); }
 
   /// A test that writes a record at once, and notes that it ran.
-  dem::RunSummary write_record(const fs::path& part) {
+  dem::RunSummary write_record(const dem::Scene& scene, const fs::path& part) {
     const std::lock_guard lock(mutex);
     ran.push_back(part.stem().string());
-    for (const char* name : {"scene.json", "provenance.json", "record.csv"}) write_file(part / name, "{}\n");
+    write_file(part / "scene.json", scene.to_json(part).dump() + "\n");
+    write_file(part / "provenance.json", "{}\n");
+    Record record(record_columns());
+    for (std::size_t i = 0; i < scene.record_rows(); ++i)
+      record.append(std::vector<double>(record_columns().size(), 0.5));
+    record.write_csv(part / "record.csv");
+    if (!scene.measure.snapshots.empty()) {
+      const dem::State one{.box = {9, 9, 9}, .position = {{1, 1, 1}}, .velocity = {{0, 0, 0}}, .radius = {1}};
+      dem::SnapshotWriter(part / "snapshots.h5", one.radius).append(one, {});
+    }
     return {0.01, 1000, {}, false};
   }
 
@@ -44,8 +57,8 @@ class RunCampaign : public testing::Test {
   RunOptions options() {
     RunOptions result;
     result.workers = 2;
-    result.run_test = [this](const dem::Scene&, const fs::path& part, const dem::RunHooks&) {
-      return write_record(part);
+    result.run_test = [this](const dem::Scene& scene, const fs::path& part, const dem::RunHooks&) {
+      return write_record(scene, part);
     };
     return result;
   }
@@ -75,11 +88,11 @@ TEST_F(RunCampaign, MakesEveryRecordAfterTheOneItStartsFrom) {
 TEST_F(RunCampaign, RunsAsManyAtATimeAsAsked) {
   auto o = options();
   std::atomic<int> now{0}, most{0};
-  o.run_test = [&](const dem::Scene&, const fs::path& part, const dem::RunHooks&) {
+  o.run_test = [&](const dem::Scene& scene, const fs::path& part, const dem::RunHooks&) {
     most = std::max(most.load(), ++now);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     --now;
-    return write_record(part);
+    return write_record(scene, part);
   };
   run_campaign(campaign, open(), o);
   EXPECT_EQ(most, 2);
@@ -87,9 +100,9 @@ TEST_F(RunCampaign, RunsAsManyAtATimeAsAsked) {
 
 TEST_F(RunCampaign, AFailureStopsOnlyThoseThatStartFromIt) {
   auto o = options();
-  o.run_test = [&](const dem::Scene&, const fs::path& part, const dem::RunHooks&) {
+  o.run_test = [&](const dem::Scene& scene, const fs::path& part, const dem::RunHooks&) {
     if (part.stem() == "iso-s1") throw Error("scene", "path", "the grains flew away");
-    return write_record(part);
+    return write_record(scene, part);
   };
   std::vector<std::string> told;
   o.hooks.failed = [&](const FailedJob& job) { told.push_back(job.record); };
@@ -113,13 +126,13 @@ TEST_F(RunCampaign, StopsWhenToldAndGoesOnLater) {
   std::atomic<bool> stop{false};
   auto o = options();
   o.hooks.stop = &stop;
-  o.run_test = [&](const dem::Scene&, const fs::path& part, const dem::RunHooks& hooks) {
+  o.run_test = [&](const dem::Scene& scene, const fs::path& part, const dem::RunHooks& hooks) {
     if (!part.stem().string().starts_with("iso")) {
       stop = true;
       while (!hooks.stop->load()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       return dem::RunSummary{0, 0, {}, true};
     }
-    return write_record(part);
+    return write_record(scene, part);
   };
   const auto result = run_campaign(campaign, open(), o);
   EXPECT_TRUE(result.stopped);
@@ -137,10 +150,10 @@ TEST_F(RunCampaign, StopsWhenToldAndGoesOnLater) {
 
 TEST_F(RunCampaign, AFullDiskEndsTheCampaign) {
   auto o = options();
-  o.run_test = [&](const dem::Scene&, const fs::path& part, const dem::RunHooks&) -> dem::RunSummary {
+  o.run_test = [&](const dem::Scene& scene, const fs::path& part, const dem::RunHooks&) -> dem::RunSummary {
     if (part.stem() == "iso-s1")
       throw Error::cannot_write((part / "record.csv").string(), "No space left on device");
-    return write_record(part);
+    return write_record(scene, part);
   };
   try {
     run_campaign(campaign, open(), o);
@@ -227,15 +240,52 @@ TEST_F(RunCampaign, FilesThatAKilledRunWasWritingAreCleared) {
     EXPECT_TRUE(fs::exists(dir / name)) << name;
 }
 
-TEST_F(RunCampaign, AnIncompleteRecordIsNotTakenForOne) {
+TEST_F(RunCampaign, AKeptRecordMustBeWholeAndOfItsScene) {
   run_campaign(campaign, open(), options());
-  fs::remove(dir / "records/iso-s2/record.csv");
-  try {
-    run_campaign(campaign, open(CampaignFolder::Use::resume), options());
-    FAIL() << "an incomplete record was taken";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("iso-s2/record.csv: no such file; remove"));
-  }
+  ran.clear();
+  const fs::path records = dir / "records", kept = dir / "kept";
+  const auto refusal = [&](const std::function<void()>& spoil) {
+    fs::copy(records, kept, fs::copy_options::recursive);
+    spoil();
+    std::string said = "accepted";
+    try {
+      run_campaign(campaign, open(CampaignFolder::Use::resume), options());
+    } catch (const Error& error) {
+      said = error.what();
+    }
+    fs::remove_all(records);
+    fs::rename(kept, records);
+    return said;
+  };
+  const auto cut = [&](const char* file, std::size_t least) {
+    const std::string text = read_file(records / file);
+    write_file(records / file, text.substr(0, text.find('\n', least) + 1));
+  };
+  EXPECT_EQ(refusal([] {}), "accepted");
+  EXPECT_THAT(refusal([&] { fs::remove(records / "iso-s2/record.csv"); }),
+              AllOf(HasSubstr("iso-s2/record.csv: no such file"),
+                    HasSubstr("; remove " + (records / "iso-s2").string())));
+  EXPECT_THAT(refusal([&] { cut("d2-0.7-s1/record.csv", 2000); }),
+              AllOf(HasSubstr("d2-0.7-s1/record.csv: must have 101 rows, got"), HasSubstr("; remove ")));
+  EXPECT_THAT(refusal([&] { write_file(records / "d2-0.7-s1/record.csv", "nu,P\n0.5,nan\n"); }),
+              HasSubstr("d2-0.7-s1/record.csv"));
+  EXPECT_THAT(refusal([&] {
+                fs::copy_file(records / "d2-0.75-s1/scene.json", records / "d2-0.7-s1/scene.json",
+                              fs::copy_options::overwrite_existing);
+              }),
+              AllOf(HasSubstr("d2-0.7-s1/scene.json: is another scene than the campaign's (preparation.nu: "
+                              "0.75 there, 0.7 here)")));
+  EXPECT_THAT(refusal([&] { write_file(records / "iso-s1/provenance.json", "{"); }), HasSubstr("; remove "));
+  // Snapshots count only where a test has yet to start from them.
+  EXPECT_EQ(refusal([&] { fs::remove(records / "iso-s1/snapshots.h5"); }), "accepted");
+  EXPECT_TRUE(ran.empty());
+  EXPECT_THAT(
+      refusal([&] {
+        fs::remove_all(records / "d2-0.7-s1");
+        fs::resize_file(records / "iso-s1/snapshots.h5", 1000);
+      }),
+      AllOf(HasSubstr("iso-s1/snapshots.h5"), HasSubstr("; remove " + (records / "iso-s1").string())));
+  EXPECT_TRUE(ran.empty());
 }
 
 }  // namespace

@@ -1,0 +1,53 @@
+#include "grainlaw/calibrate/kept_record.hpp"
+
+#include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/record.hpp"
+
+namespace grainlaw::calibrate {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Runs `check`; what it throws says how to go on.
+template <class Check>
+void with_advice(const fs::path& dir, Check&& check) {
+  try {
+    check();
+  } catch (const Error& error) {
+    throw Error(std::string(error.what()) + "; remove " + dir.string() + " to have it made again");
+  }
+}
+
+void check_files(const fs::path& dir) {
+  for (const char* file : {"record.csv", "scene.json", "provenance.json"})
+    if (!fs::exists(dir / file)) throw Error((dir / file).string(), "", "no such file");
+}
+
+}  // namespace
+
+void check_kept_record(const fs::path& dir, const Json& planned) {
+  with_advice(dir, [&] {
+    check_files(dir);
+    const dem::Scene wanted = dem::Scene::read(Reader(planned, dir.filename().string()), dir);
+    const std::string scene = (dir / "scene.json").string();
+    if (const auto differs = first_difference(load_json(scene), wanted.to_json(dir)); !differs.empty())
+      throw Error(scene, "", "is another scene than the campaign's (" + differs + ")");
+    load_json(dir / "provenance.json");
+    const std::string table = (dir / "record.csv").string();
+    const Record record = Record::read_csv(table, record_columns());
+    if (record.rows() != wanted.record_rows())
+      throw Error(table, "",
+                  "must have " + std::to_string(wanted.record_rows()) + " rows, got " +
+                      std::to_string(record.rows()) + ": it is cut short or of another scene");
+  });
+}
+
+void check_kept_snapshots(const fs::path& dir) {
+  with_advice(dir, [&] { dem::list_frames(dir / "snapshots.h5"); });
+}
+
+}  // namespace grainlaw::calibrate

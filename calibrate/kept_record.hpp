@@ -1,0 +1,18 @@
+// Whether a record that an earlier run left can be gone on with. All that is found wrong throws Error, which
+// says what to remove to have the record made again.
+#pragma once
+
+#include <filesystem>
+
+#include "grainlaw/element/json.hpp"
+
+namespace grainlaw::calibrate {
+
+/// The record in `dir` must be whole (its files are there and can be read, it has the rows that its scene
+/// asks for) and of `scene`, the one that the campaign wants.
+void check_kept_record(const std::filesystem::path& dir, const Json& scene);
+
+/// Its snapshots must be readable, for another test to start from.
+void check_kept_snapshots(const std::filesystem::path& dir);
+
+}  // namespace grainlaw::calibrate
