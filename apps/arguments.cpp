@@ -35,4 +35,18 @@ long read_whole_number(const std::string& option, const std::string& text, long 
   return value;
 }
 
+void check_output(const std::string& option, const std::filesystem::path& output,
+                  const std::vector<std::filesystem::path>& inputs) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  const fs::path folder = fs::absolute(output).parent_path();
+  if (!fs::is_directory(folder, code))
+    throw Error("", option, "must lie in a directory that exists, got " + output.string());
+  if (fs::is_directory(output, code))
+    throw Error("", option, "must be a file, but " + output.string() + " is a directory");
+  for (const fs::path& input : inputs)
+    if (fs::equivalent(output, input, code))
+      throw Error("", option, "must not be " + input.string() + ", which this command reads");
+}
+
 }  // namespace grainlaw::apps

@@ -5,6 +5,10 @@
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/sinks/null_sink.h>
 
+#include <cstdlib>
+#include <optional>
+#include <string_view>
+
 namespace grainlaw::apps {
 
 namespace {
@@ -36,6 +40,14 @@ std::string standing(const calibrate::CampaignProgress& now) {
   return text;
 }
 
+/// The largest E_k/E_p that a run warns of where it is not quasi-static; nothing for any other warning.
+std::optional<double> restless_ratio(const std::string& warning) {
+  constexpr std::string_view beginning = "E_k/E_p is above 1e-3 in ", before_ratio = "(largest ";
+  const auto at = warning.find(before_ratio);
+  if (!warning.starts_with(beginning) || at == std::string::npos) return std::nullopt;
+  return std::strtod(warning.c_str() + at + before_ratio.size(), nullptr);
+}
+
 }  // namespace
 
 CampaignTalk::CampaignTalk(Terminal& terminal, const std::filesystem::path& dir)
@@ -52,9 +64,23 @@ void CampaignTalk::complain(const std::string& line) {
   log_->error(line);
 }
 
-void CampaignTalk::remark(const std::string& line) {
-  terminal_.warn("warning: " + line);
+void CampaignTalk::remark(const std::string& record, const std::string& warning) {
+  const std::string line = fmt::format("{}: {}", record, warning);
   log_->warn(line);
+  const auto ratio = restless_ratio(warning);
+  if (!ratio) return terminal_.warn("warning: " + line);
+  ++restless_;
+  if (*ratio <= worst_ratio_) return;
+  worst_ratio_ = *ratio;
+  worst_record_ = record;
+}
+
+void CampaignTalk::sum_up() {
+  if (done_ + lost_ < jobs_ || restless_ == 0) return;
+  say(
+      fmt::format("{} of {} runs have rows with E_k/E_p above 1e-3 (largest {:.3g}, {}): see \"What was "
+                  "run\" in the report",
+                  restless_, runs_, worst_ratio_, worst_record_));
 }
 
 void CampaignTalk::show(const calibrate::CampaignProgress& progress) {
@@ -69,7 +95,11 @@ void CampaignTalk::finished(const calibrate::FinishedJob& job, const calibrate::
   const double speed = static_cast<double>(job.summary.particle_steps) / job.summary.wall_s;
   say(fmt::format("finished {} in {}, {}; {}", job.record, time_text(job.summary.wall_s), speed_text(speed),
                   standing(progress)));
-  for (const auto& warning : job.summary.warnings) remark(fmt::format("{}: {}", job.record, warning));
+  for (const auto& warning : job.summary.warnings) remark(job.record, warning);
+  ++runs_;
+  jobs_ = progress.jobs;
+  done_ = progress.finished;
+  sum_up();
 }
 
 void CampaignTalk::failed(const calibrate::FailedJob& job) {
@@ -77,6 +107,8 @@ void CampaignTalk::failed(const calibrate::FailedJob& job) {
   if (!job.skipped.empty())
     complain(
         fmt::format("skipped, because they start from {}: {}", job.record, fmt::join(job.skipped, ", ")));
+  lost_ += 1 + job.skipped.size();
+  sum_up();
 }
 
 calibrate::CampaignHooks CampaignTalk::hooks(const std::atomic<bool>& stop) {

@@ -1,5 +1,6 @@
 // What a running campaign says: on a terminal a live line and a line per finished test, elsewhere lines
-// alone; and the same with the time of day in the campaign's log file.
+// alone; and the same with the time of day in the campaign's log file. What nearly every run warns of (rows
+// that are not quasi-static) goes to the log alone, and is counted at the end.
 #pragma once
 
 #include <spdlog/logger.h>
@@ -28,7 +29,9 @@ class CampaignTalk {
   calibrate::CampaignHooks hooks(const std::atomic<bool>& stop);
 
  private:
-  void remark(const std::string& line);
+  void remark(const std::string& record, const std::string& warning);
+  /// Once no job is left: how many runs left the quasi-static range, if any did.
+  void sum_up();
   void show(const calibrate::CampaignProgress& progress);
   void finished(const calibrate::FinishedJob& job, const calibrate::CampaignProgress& progress);
   void failed(const calibrate::FailedJob& job);
@@ -36,6 +39,11 @@ class CampaignTalk {
   Terminal& terminal_;
   std::shared_ptr<spdlog::logger> log_;
   std::chrono::steady_clock::time_point last_line_ = std::chrono::steady_clock::now();
+  std::size_t jobs_ = 0, done_ = 0, lost_ = 0;  ///< of the campaign; lost ones failed or were skipped
+  std::size_t runs_ = 0;                        ///< finished by this process
+  std::size_t restless_ = 0;                    ///< those of them with rows that are not quasi-static
+  double worst_ratio_ = 0;                      ///< largest E_k/E_p among them
+  std::string worst_record_;
 };
 
 }  // namespace grainlaw::apps

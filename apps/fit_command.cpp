@@ -1,13 +1,19 @@
 // grainlaw fit: the fits alone, from records on disk.
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/apps/commands.hpp"
 #include "grainlaw/apps/locations.hpp"
 #include "grainlaw/apps/summary.hpp"
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/calibrate/fit_records.hpp"
+#include "grainlaw/calibrate/lock_file.hpp"
+#include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 
 namespace grainlaw::apps {
@@ -18,12 +24,36 @@ struct Arguments {
   std::string dir, output, fits;
 };
 
+namespace fs = std::filesystem;
+
+/// Every file below `dir` that belongs to a campaign or a record.
+std::vector<fs::path> inputs_in(const fs::path& dir) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(dir))
+    for (const char* name : {"campaign.json", "scene.json", "record.csv", "provenance.json", "snapshots.h5"})
+      if (entry.path().filename() == name) files.push_back(entry.path());
+  return files;
+}
+
+/// Keeps other processes from writing into a campaign's folder; nothing where the results go elsewhere.
+std::optional<calibrate::LockFile> lock_of(const Arguments& arguments) {
+  const fs::path dir = arguments.dir;
+  if (!arguments.output.empty() || !fs::exists(dir / "campaign.json")) return std::nullopt;
+  return std::optional<calibrate::LockFile>(std::in_place, dir / ".lock", dir);
+}
+
 int run(const Arguments& arguments) {
-  namespace fs = std::filesystem;
   const fs::path dir = arguments.dir;
   const fs::path output = arguments.output.empty() ? dir / "parameters.json" : fs::path(arguments.output);
   fs::path fits = arguments.fits;
   if (arguments.output.empty() && fits.empty()) fits = dir / "fits.json";
+  if (!fs::is_directory(dir)) throw Error(dir.string(), "", "no such directory");
+  const std::vector<fs::path> inputs = inputs_in(dir);
+  check_output("-o", output, inputs);
+  if (!fits.empty()) check_output("--fits", fits, inputs);
+  if (!fits.empty() && fs::absolute(fits).lexically_normal() == fs::absolute(output).lexically_normal())
+    throw Error("", "--fits", "must be another file than -o, got " + fits.string());
+  const auto lock = lock_of(arguments);
   const calibrate::FitOutput fitted = calibrate::fit_records(dir, find_thesis(size_ratio_of_records(dir)));
   write_file(output, fitted.parameters.to_json().dump(2) + "\n");
   if (!fits.empty()) write_file(fits, fitted.fits.dump(2) + "\n");

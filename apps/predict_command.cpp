@@ -78,7 +78,13 @@ model::PredictOptions read_options(const Arguments& arguments) {
   return options;
 }
 
+std::vector<fs::path> inputs_of(const Arguments& arguments) {
+  const fs::path path = arguments.path;
+  return {arguments.parameters, path, path / "scene.json", path / "record.csv"};
+}
+
 int run(const Arguments& arguments) {
+  if (!arguments.output.empty()) check_output("-o", arguments.output, inputs_of(arguments));
   const auto options = read_options(arguments);
   const auto parameters = model::ParameterSet::load(arguments.parameters);
   const Followed followed = read_followed(arguments.path);

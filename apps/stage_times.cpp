@@ -1,10 +1,12 @@
 #include "grainlaw/apps/stage_times.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
 
+#include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 
@@ -28,6 +30,16 @@ double core_seconds() {
   return sum;
 }
 
+/// The provenance of a record; an Error says which directory to remove where it cannot be read.
+Json load_provenance(const fs::path& record) {
+  try {
+    return load_json(record / "provenance.json");
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}; remove the directory {} and go on with --resume to make the record again",
+                            error.what(), record.string()));
+  }
+}
+
 /// One entry per record on disk, by name.
 Json test_times(const fs::path& records) {
   std::vector<fs::path> folders;
@@ -37,7 +49,7 @@ Json test_times(const fs::path& records) {
   std::sort(folders.begin(), folders.end());
   Json list = Json::array();
   for (const auto& folder : folders) {
-    const Json provenance = load_json(folder / "provenance.json");
+    const Json provenance = load_provenance(folder);
     Json test{{"name", folder.filename().string()}};
     for (const char* key : {"wall_time_s", "particle_steps", "particle_steps_per_s"})
       test[key] = provenance.contains(key) ? provenance.at(key) : Json();
@@ -51,11 +63,21 @@ Json test_times(const fs::path& records) {
 StageTimes::StageTimes(fs::path dir, bool resumed) : dir_(std::move(dir)) {
   const fs::path file = dir_ / "timing.json";
   if (!resumed || !fs::exists(file)) return;
-  const Json json = load_json(file);
-  for (Reader& stage : Reader(json, file.string()).objects_or_none("stages"))
+  try {
+    stages_ = read(file);
+  } catch (const Error& error) {
+    Terminal().warn(fmt::format("warning: {}; times are counted anew", error.what()));
+  }
+}
+
+/// The stage that goes on, if it had begun.
+std::vector<StageTimes::Stage> StageTimes::read(const fs::path& file) {
+  std::vector<Stage> stages;
+  for (Reader& stage : Reader(load_json(file), file.string()).objects_or_none("stages"))
     if (stage.text("name") == accumulating_stage)
-      stages_.push_back(
+      stages.push_back(
           {accumulating_stage, stage.number("wall_s", at_least(0)), stage.number("core_s", at_least(0))});
+  return stages;
 }
 
 void StageTimes::measure(const std::string& stage, const std::function<void()>& work) {

@@ -13,7 +13,8 @@ namespace grainlaw::apps {
 
 class StageTimes {
  public:
-  /// `resumed`: the simulation goes on, so its time adds to what timing.json in `dir` says.
+  /// `resumed`: the simulation goes on, so its time adds to what timing.json in `dir` says. One that cannot
+  /// be read is ignored with a warning.
   StageTimes(std::filesystem::path dir, bool resumed);
 
   /// Runs `work`, notes its seconds (on the clock, and of all cores together) and writes timing.json, also
@@ -27,6 +28,7 @@ class StageTimes {
     std::string name;
     double wall_s, core_s;
   };
+  static std::vector<Stage> read(const std::filesystem::path& file);
   void write() const;
 
   std::filesystem::path dir_;

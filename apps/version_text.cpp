@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "grainlaw/dem/provenance.hpp"
+#include "grainlaw/dem/simd.hpp"
 #include "grainlaw/element/version.hpp"
 #include "grainlaw_dependencies.hpp"
 
@@ -10,7 +11,7 @@ namespace grainlaw::apps {
 
 std::string version_text() {
   std::string text = fmt::format("grainlaw {}\n  commit {}\n  compiler {}\n  simd {}\n", version(), commit(),
-                                 dem::compiler_name(), dem::simd_name());
+                                 dem::compiler_name(), dem::simd_target());
   for (const auto& [name, number] : dependencies) text += fmt::format("  {} {}\n", name, number);
   return text;
 }

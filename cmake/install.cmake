@@ -12,7 +12,8 @@ foreach(room element dem model calibrate)
     install(EXPORT grainlaw-${room} NAMESPACE grainlaw:: DESTINATION ${grainlaw_package_dir})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/grainlaw
             FILES_MATCHING PATTERN *.hpp
-            PATTERN snapshot_hdf5.hpp EXCLUDE)  # private: needs HDF5's headers
+            PATTERN snapshot_hdf5.hpp EXCLUDE  # private: needs HDF5's headers
+            PATTERN *-inl.hpp EXCLUDE)         # private: parts of a kernel's source
   endif()
 endforeach()
 if(TARGET grainlaw_program)

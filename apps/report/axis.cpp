@@ -45,13 +45,13 @@ int power_for(double largest) {
 
 }  // namespace
 
-Axis make_axis(std::array<double, 2> range, int most, double unit) {
+Axis make_axis(std::array<double, 2> range, int most, double unit, std::size_t least) {
   Axis axis{range[0], range[1], {}, 0};
   const double largest = std::max(std::abs(range[0]), std::abs(range[1])) * unit;
   axis.power = power_for(largest);
   const double shown = unit / std::pow(10.0, axis.power);  // label value per unit of data
-  // Two marks make a scale; a step that leaves fewer inside the range is too coarse.
-  for (int attempt = 0; attempt < 3 && axis.tics.size() < 2; ++attempt, most *= 2) {
+  // A step that leaves too few marks inside the range is too coarse.
+  for (int attempt = 0; attempt < 3 && axis.tics.size() < least; ++attempt, most *= 2) {
     const double step = round_step((range[1] - range[0]) * shown, most);
     const int decimals = decimals_of(step);
     const double slack = 1e-9 * step;

@@ -18,8 +18,9 @@ struct Axis {
   int power = 0;  ///< labels are in units of 10^power
 };
 
-/// An axis over [low, high] with about `most` tic marks, at least two; labels show the data times `unit`.
-Axis make_axis(std::array<double, 2> range, int most, double unit = 1);
+/// An axis over [low, high] with about `most` tic marks, and no fewer than `least` (2 or 3); labels show the
+/// data times `unit`.
+Axis make_axis(std::array<double, 2> range, int most, double unit = 1, std::size_t least = 2);
 
 /// The range of finite values, widened by a twentieth on each side; one value or none gets a range around it.
 std::array<double, 2> padded_range(const std::vector<double>& values);

@@ -107,6 +107,8 @@ std::string tics(const std::string& axis_name, const Axis& axis, bool labelled) 
   return line + ")\n";
 }
 
+constexpr std::size_t least_tics = 3;  // of an upright axis
+
 /// How many tic marks an upright axis of so many pixels has room for.
 int tics_over(double height) { return std::max(4, static_cast<int>(height / 32)); }
 
@@ -130,7 +132,7 @@ class PanelScript {
       : figure_(figure),
         panel_(panel),
         x_(make_axis(range_of(panel, true), std::max(3, static_cast<int>(panel.area.width / 52)))),
-        y_(make_axis(range_of(panel, false), tics_over(panel.area.height))) {}
+        y_(make_axis(range_of(panel, false), tics_over(panel.area.height), 1, least_tics)) {}
 
   std::string text(const std::string& first_block) const {
     return margins() + axes() + labels() + plot(first_block);
@@ -160,7 +162,7 @@ class PanelScript {
   }
 
   Axis right_axis() const {
-    return make_axis({y_.low, y_.high}, tics_over(panel_.area.height), panel_.right_unit);
+    return make_axis({y_.low, y_.high}, tics_over(panel_.area.height), panel_.right_unit, least_tics);
   }
 
   std::string label(int tag, const std::string& enhanced_text, double x_px, double y_px,

@@ -30,7 +30,7 @@ FitParameter read_parameter(const Json& json) {
   return {text_in(json, "name"),         number_in(json, "value"),
           number_in(json, "stderr"),     number_in(json, "thesis"),
           flag(json, "at_bound", false), flag(json, "determined", true),
-          flag(json, "held", false),     number_in(json, "shift_at_twice_P_min")};
+          flag(json, "held", false),     number_in(json, "shift_at_four_P_min")};
 }
 
 /// The parts of a name between its dots.

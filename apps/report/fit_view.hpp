@@ -21,7 +21,7 @@ struct FitParameter {
   std::string name;
   std::optional<double> value, error, thesis;
   bool at_bound = false, determined = true, held = false;
-  std::optional<double> shift;  ///< of the value, where only rows of twice the pressure are taken
+  std::optional<double> shift;  ///< of the value, where only rows of four times the pressure are taken
 };
 
 struct FitView {

@@ -23,13 +23,13 @@ Markup parameter_piece(const FitView& fit, const FitParameter& parameter) {
 Markup shifts(const FitView& fit) {
   std::vector<Markup> pieces;
   for (const FitParameter& parameter : fit.parameters) {
-    if (parameter.shift.value_or(0) == 0) continue;
+    if (!parameter.shift) continue;
     const std::string shift = number(*parameter.shift, 2);
     pieces.push_back(parameter_symbol(fit, parameter.name) +
                      text(*parameter.shift > 0 ? " +" + shift : " " + shift));
   }
   if (pieces.empty()) return {};
-  return element("div", "from twice the lowest pressure on: "_html + join(pieces, ", "_html),
+  return element("div", "from four times the lowest pressure on: "_html + join(pieces, ", "_html),
                  {{"class", "under"}});
 }
 
@@ -163,8 +163,8 @@ Markup quality(const std::vector<FitView>& fits) {
                  "of the data. Condition: how much the worst-determined combination of parameters amplifies "
                  "noise compared with the best-determined one; large numbers mean that parameters can trade "
                  "off against each other. Starts: in how many of the starting points tried the best solution "
-                 "was reached. From twice the lowest pressure on: how far a parameter moves where only rows "
-                 "at larger pressure are taken; no part of the standard error."_html,
+                 "was reached. From four times the lowest pressure on: how far a parameter moves where only "
+                 "rows at larger pressure are taken; no part of the standard error."_html,
                  {{"class", "note"}});
 }
 

@@ -67,7 +67,8 @@ Markup prediction_summary(const Inputs& inputs) {
     }
     table.row(cells);
   }
-  return "<h3>How well does the law predict tests it never saw?</h3>\n<p>Median over the predicted runs of "
+  return "<h3>How well does the law predict tests it never saw?</h3>\n"_html + outdated_predictions(inputs) +
+         "<p>Median over the predicted runs of "
          "the relative error "
          "along the path (root mean square of the difference over root mean square of the DEM's values).</p>\n"_html +
          table.html();

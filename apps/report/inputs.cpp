@@ -1,10 +1,11 @@
 #include "grainlaw/apps/report/inputs.hpp"
 
 #include <algorithm>
-#include <map>
+#include <functional>
 
 #include "grainlaw/apps/report/numbers.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/file.hpp"
 #include "grainlaw/element/material.hpp"
 
 namespace grainlaw::report {
@@ -20,34 +21,54 @@ std::string short_reason(const Error& error, const fs::path& file) {
   return reason;
 }
 
-Json read_json(Inputs& inputs, const std::string& name) {
+/// The key without which a file says nothing, and what it must hold.
+struct Core {
+  const char* key;
+  Json::value_t type;
+};
+constexpr Core campaign_core{"tests", Json::value_t::array}, parameters_core{"format", Json::value_t::string},
+    fits_core{"fits", Json::value_t::array}, predictions_core{"predictions", Json::value_t::array},
+    timing_core{"stages", Json::value_t::array}, scene_core{"path", Json::value_t::object},
+    provenance_core{"version", Json::value_t::string};
+
+const char* type_name(Json::value_t type) {
+  if (type == Json::value_t::array) return "a list";
+  return type == Json::value_t::object ? "an object" : "text";
+}
+
+Json load_with(const fs::path& file, const Core& core) {
+  Json json = load_json(file);
+  if (value_in(json, core.key).type() != core.type)
+    throw Error(file.string(), core.key, std::string("must be ") + type_name(core.type));
+  return json;
+}
+
+/// What `load` makes of a file; a gap and an empty result where it is missing or `load` throws Error.
+template <class Result>
+Result read_or_note(Inputs& inputs, const std::string& name,
+                    const std::function<Result(const fs::path&)>& load) {
   const fs::path file = inputs.dir / name;
   std::error_code ignored;
   if (!fs::exists(file, ignored)) {
-    inputs.gaps.push_back({name, "is not there"});
+    inputs.gaps.push_back({Gap::Kind::missing, name, "is not there"});
     return {};
   }
   try {
-    return load_json(file);
+    return load(file);
   } catch (const Error& error) {
-    inputs.gaps.push_back({name, short_reason(error, file)});
+    inputs.gaps.push_back({Gap::Kind::unreadable, name, short_reason(error, file)});
     return {};
   }
 }
 
+Json read_json(Inputs& inputs, const std::string& name, const Core& core) {
+  return read_or_note<Json>(inputs, name, [&](const fs::path& file) { return load_with(file, core); });
+}
+
 std::optional<Record> read_record(Inputs& inputs, const std::string& name) {
-  const fs::path file = inputs.dir / name;
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) {
-    inputs.gaps.push_back({name, "is not there"});
-    return std::nullopt;
-  }
-  try {
-    return Record::read_csv(file, {"nu", "eps_dev"});
-  } catch (const Error& error) {
-    inputs.gaps.push_back({name, short_reason(error, file)});
-    return std::nullopt;
-  }
+  return read_or_note<std::optional<Record>>(inputs, name, [](const fs::path& file) {
+    return Record::read_csv(file, {"nu", "eps_dev", "P", "sigma_dev", "s_dev", "F_dev"});
+  });
 }
 
 /// The first mode of a path that is not relax.
@@ -115,8 +136,8 @@ Run read_run(Inputs& inputs, const std::string& name, bool finished) {
   if (finished) {
     const std::string folder = "records/" + name + "/";
     run.record = read_record(inputs, folder + "record.csv");
-    run.scene = read_json(inputs, folder + "scene.json");
-    run.provenance = read_json(inputs, folder + "provenance.json");
+    run.scene = read_json(inputs, folder + "scene.json", scene_core);
+    run.provenance = read_json(inputs, folder + "provenance.json", provenance_core);
   }
   const Json& test = test_of(inputs.campaign, run.test);
   run.role = text_in(test, "role");
@@ -142,10 +163,11 @@ void read_runs(Inputs& inputs) {
   }
   const auto unfinished =
       std::count_if(inputs.runs.begin(), inputs.runs.end(), [](const Run& run) { return run.unfinished; });
-  if (inputs.runs.empty()) inputs.gaps.push_back({"records", "holds no test"});
+  if (inputs.runs.empty()) inputs.gaps.push_back({Gap::Kind::missing, "records", "holds no test"});
   if (unfinished > 0) {
-    inputs.gaps.push_back({"records", std::to_string(unfinished) + " of " + std::to_string(names.size()) +
-                                          " tests of the campaign have not been run to their end"});
+    inputs.gaps.push_back({Gap::Kind::missing, "records",
+                           std::to_string(unfinished) + " of " + std::to_string(names.size()) +
+                               " tests of the campaign have not been run to their end"});
   }
 }
 
@@ -154,7 +176,15 @@ bool stays_inside(const fs::path& file) {
   return !file.empty() && file.is_relative() && std::find(file.begin(), file.end(), "..") == file.end();
 }
 
+/// True if the predictions name the parameter set they were made with, and parameters.json is another.
+bool outdated(const Inputs& inputs) {
+  const std::string made_with = text_in(inputs.predictions, "parameters_digest");
+  return !made_with.empty() && !inputs.parameters.is_null() &&
+         made_with != digest(read_file(inputs.dir / "parameters.json"));
+}
+
 void read_predictions(Inputs& inputs) {
+  inputs.predictions_outdated = outdated(inputs);
   const Json& entries = value_in(inputs.predictions, "predictions");
   if (!entries.is_array()) return;
   for (const Json& entry : entries) {
@@ -201,11 +231,11 @@ Inputs read_inputs(const fs::path& dir) {
   if (!fs::is_directory(dir, ignored)) throw Error(dir.string(), "", "is not a folder");
   Inputs inputs;
   inputs.dir = dir;
-  inputs.campaign = read_json(inputs, "campaign.json");
-  inputs.parameters = read_json(inputs, "parameters.json");
-  inputs.fits = read_json(inputs, "fits.json");
-  inputs.predictions = read_json(inputs, "predictions.json");
-  inputs.timing = read_json(inputs, "timing.json");
+  inputs.campaign = read_json(inputs, "campaign.json", campaign_core);
+  inputs.parameters = read_json(inputs, "parameters.json", parameters_core);
+  inputs.fits = read_json(inputs, "fits.json", fits_core);
+  inputs.predictions = read_json(inputs, "predictions.json", predictions_core);
+  inputs.timing = read_json(inputs, "timing.json", timing_core);
   read_runs(inputs);
   read_predictions(inputs);
   const bool nothing_there = inputs.campaign.is_null() && inputs.parameters.is_null() &&

@@ -14,7 +14,9 @@ namespace grainlaw::report {
 
 /// Something the report would have shown, and why it cannot.
 struct Gap {
-  std::string file;
+  enum class Kind { missing, unreadable };
+  Kind kind;
+  std::string file;  ///< within the campaign folder
   std::string reason;
 };
 
@@ -25,7 +27,7 @@ struct Run {
   std::optional<int> seed;
   bool unfinished = false;       ///< the folder still ends in .part, or there is none
   std::optional<Record> record;  ///< absent if missing or unreadable
-  Json scene, provenance;        ///< null where missing
+  Json scene, provenance;        ///< null where missing or unreadable
   std::string mode;              ///< mode of its first segment that is not relax; "" if unknown
   std::string role;              ///< "fit", "predict" or ""
 };
@@ -38,13 +40,15 @@ struct PredictedRun {
   std::optional<Record> record;
 };
 
-/// A campaign folder in memory. Every Json is null where its file is missing.
+/// A campaign folder in memory. Every Json is null where its file is missing or unreadable.
 struct Inputs {
   std::filesystem::path dir;
   Json campaign, parameters, fits, predictions, timing;
   std::vector<Run> runs;  ///< in the order of the campaign, then by seed
   std::vector<PredictedRun> predicted;
   std::vector<Gap> gaps;
+  /// True if predictions.json was made with another parameter set than parameters.json holds now.
+  bool predictions_outdated = false;
 
   const Run* run(const std::string& name) const;
   /// Stress unit k*, kPa: from the parameters' material, else from the campaign's; nothing if neither is

@@ -91,7 +91,7 @@ Entries collect(const Inputs& inputs, const std::vector<FitView>& fits) {
   return entries;
 }
 
-/// Difference from the thesis in standard errors; grey up to 2, marked from 3 on.
+/// Difference from the thesis in standard errors: plain up to 2, bold beyond, underlined too beyond 3.
 Markup difference(const Entry& entry) {
   if (!entry.value || !entry.thesis || !entry.error || *entry.error <= 0) return {};
   const double sigmas = (*entry.value - *entry.thesis) / *entry.error;
@@ -280,9 +280,9 @@ Markup parameter_tables(const Inputs& inputs, const std::vector<FitView>& fits) 
   tables += element(
       "p",
       "Each cell: our value ± one standard error; under it the thesis's value and our difference from it in "
-      "combined standard errors σ. The thesis prints no errors for these numbers, so σ is ours alone. Beyond "
-      "3 σ is marked. <i>Italic</i>: not fitted here. Rows for comparison only are fitted to tests that the "
-      "law has to predict; no prediction reads them."_html,
+      "units of σ, our own standard error (the thesis prints none for these numbers): bold beyond 2\u00a0σ, "
+      "underlined as well beyond 3\u00a0σ. <i>Italic</i>: not fitted here. Rows for comparison only are "
+      "fitted to tests that the law has to predict; no prediction reads them."_html,
       {{"class", "note"}});
   return tables +
          (inputs.parameters.is_null() ? Markup() : closure_sentence(inputs) + sources_table(entries));

@@ -7,12 +7,18 @@
 #include "grainlaw/apps/report/numbers.hpp"
 #include "grainlaw/apps/report/prose.hpp"
 #include "grainlaw/apps/report/sections.hpp"
+#include "grainlaw/apps/report/seed_scatter.hpp"
 #include "grainlaw/apps/report/symbols.hpp"
 
 namespace grainlaw::report {
 namespace {
 
 constexpr std::size_t dots_per_run = 160, points_per_line = 400;
+
+const std::vector<std::string>& quantities() {
+  static const std::vector<std::string> names{"P", "sigma_dev", "s_dev", "F_dev"};
+  return names;
+}
 
 /// All predictions of one test: every seed, every form.
 struct TestPredictions {
@@ -72,7 +78,6 @@ std::string abscissa(const TestPredictions& test, const std::vector<const Run*>&
 
 Series series_of(const Record& record, const std::string& x, const std::string& y, std::size_t most) {
   Series series;
-  if (!record.has(y)) return series;
   series.x = thinned(record[x], most);
   series.y = thinned(record[y], most);
   return series;
@@ -95,15 +100,24 @@ std::array<double, 2> loaded_range(const std::vector<const Record*>& records) {
   return padded_range(values);
 }
 
-/// Records of the DEM and of the law that have the columns P and s_dev.
-std::vector<const Record*> with_stress(const TestPredictions& test, const std::vector<const Run*>& measured) {
+std::vector<const Record*> records_of(const std::vector<const Run*>& measured) {
   std::vector<const Record*> records;
-  const auto add = [&](const std::optional<Record>& record) {
-    if (record && record->has("P") && record->has("s_dev")) records.push_back(&*record);
-  };
-  for (const Run* run : measured) add(run->record);
-  for (const PredictedRun* run : test.runs) add(run->record);
+  for (const Run* run : measured) records.push_back(&*run->record);
   return records;
+}
+
+/// Records of the DEM and of the law.
+std::vector<const Record*> all_records(const TestPredictions& test, const std::vector<const Run*>& measured) {
+  std::vector<const Record*> records = records_of(measured);
+  for (const PredictedRun* run : test.runs) {
+    if (run->record) records.push_back(&*run->record);
+  }
+  return records;
+}
+
+Series measured_style(const Run& run, std::size_t n) {
+  const std::string label = run.seed ? "DEM, seed " + std::to_string(*run.seed) : "DEM";
+  return {label, Draw::dots, seed_grey(n), {}, {}};
 }
 
 Series prediction_style(const std::string& form) {
@@ -121,8 +135,8 @@ Panel quantity_panel(const Inputs& inputs, const TestPredictions& test,
     style.in_legend = false;
     panel.series.push_back(std::move(style));
   };
-  for (const Run* run : measured)
-    add({"DEM", Draw::dots, measured_colour, {}, {}}, *run->record, dots_per_run);
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    add(measured_style(*measured[i], i), *measured[i]->record, dots_per_run);
   // Whole lines first, broken ones over them: forms that coincide can both be seen.
   for (const Draw draw : {Draw::line, Draw::dashes, Draw::dotted}) {
     for (const PredictedRun* run : test.runs) {
@@ -130,7 +144,7 @@ Panel quantity_panel(const Inputs& inputs, const TestPredictions& test,
         add(prediction_style(run->form), *run->record, points_per_line);
     }
   }
-  if (quantity == "s_dev") panel.y_range = loaded_range(with_stress(test, measured));
+  if (quantity == "s_dev") panel.y_range = loaded_range(all_records(test, measured));
   const auto unit = inputs.stress_unit_kPa();
   if (unit && (quantity == "P" || quantity == "sigma_dev")) {
     panel.right_unit = *unit;
@@ -192,18 +206,27 @@ Markup law_warnings(const TestPredictions& test) {
   return items.empty() ? items : element("ul", items, {{"class", "note"}});
 }
 
-Markup error_table(const TestPredictions& test) {
-  const std::vector<std::string> quantities{"P", "sigma_dev", "s_dev", "F_dev"};
+/// The last line of a table of errors: how much of them is noise.
+std::vector<Markup> scatter_row(const std::vector<const Run*>& measured) {
+  std::vector<Markup> cells{element("span", "scatter between seeds"_html, {{"class", "quiet"}})};
+  for (const std::string& quantity : quantities())
+    cells.push_back(text(percent(seed_scatter(records_of(measured), quantity))));
+  cells.push_back({});
+  return cells;
+}
+
+Markup error_table(const TestPredictions& test, const std::vector<const Run*>& measured) {
   Table table;
   table.column("Relative error along the path"_html);
-  for (const std::string& quantity : quantities) table.column(symbol(quantity), Table::Kind::figures);
+  for (const std::string& quantity : quantities()) table.column(symbol(quantity), Table::Kind::figures);
   table.column("How it ended"_html);
   for (const std::string& form : forms_of(test)) {
     std::vector<Markup> cells{text(form_name(form))};
-    for (const std::string& quantity : quantities) cells.push_back(text(error_cell(test, form, quantity)));
+    for (const std::string& quantity : quantities()) cells.push_back(text(error_cell(test, form, quantity)));
     cells.push_back(status_cell(test, form));
     table.row(cells);
   }
+  if (measured.size() > 1) table.row(scatter_row(measured));
   return table.html("small");
 }
 
@@ -234,10 +257,9 @@ Markup test_figure(const Inputs& inputs, const TestPredictions& test, std::size_
   figure.alt =
       "DEM and predictions of " + test.test + ": pressure, shear stress, stress ratio, contact anisotropy";
   figure.smallest_width = "640px";
-  const std::vector<std::string> quantities{"P", "sigma_dev", "s_dev", "F_dev"};
-  const auto areas = grid(figure, quantities.size(), 2, 210, 64);
-  for (std::size_t i = 0; i < quantities.size(); ++i) {
-    figure.panels.push_back(quantity_panel(inputs, test, measured, quantities[i], areas[i]));
+  const auto areas = grid(figure, quantities().size(), 2, 210, 64);
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    figure.panels.push_back(quantity_panel(inputs, test, measured, quantities()[i], areas[i]));
   }
   figure.key = {{"DEM", Draw::dots, measured_colour, {}, {}}};
   for (const std::string& form : forms_of(test)) figure.key.push_back(prediction_style(form));
@@ -245,23 +267,32 @@ Markup test_figure(const Inputs& inputs, const TestPredictions& test, std::size_
   figure.caption = element("b", text(test.test)) + text(" (" + mode_name(test.mode) + "), " + seeds) +
                    start_sentence(test);
   return "<h3>"_html + text(mode_name(test.mode) + ": " + test.test) + "</h3>\n"_html + draw(figure) +
-         error_table(test) + law_warnings(test);
+         error_table(test, measured) + law_warnings(test);
 }
 
 }  // namespace
+
+Markup outdated_predictions(const Inputs& inputs) {
+  if (!inputs.predictions_outdated) return {};
+  return "<p class=\"gaps\"><b>These predictions are out of date</b>: made with another parameter set than "
+         "<code>parameters.json</code> holds now; run <code>grainlaw calibrate -o DIR --resume</code> to "
+         "renew "
+         "them.</p>\n"_html;
+}
 
 Markup predictions_section(const Inputs& inputs) {
   const auto tests = by_test(inputs);
   if (tests.empty()) return absent("No predictions: predictions.json is not there, or holds none.");
   Markup section =
-      "<p>The law, with the fitted parameters, follows the strain path of tests that no fit has read. Dots "
-      "are "
-      "the DEM's, all seeds; lines are the law in its three forms: the reduced law with the current "
-      "<var>ν</var> in Eqs. 2.17 and 2.18 (closed form), the same as rate equations (rate form), and the "
-      "coupled law of Eq. 4.16, in which stress and fabric act on each other. The scale of "
-      "<var>s</var><sub>dev</sub> leaves out where <var>P</var>* is below a hundredth of its largest value. "
-      "In "
-      "the tables: mean over seeds, each seed in brackets.</p>\n"_html;
+      outdated_predictions(inputs) +
+      "<p>The law, with the fitted parameters, follows the strain path of tests that no fit behind these "
+      "parameters has read. Dots are the DEM's, a shade of grey per seed; lines are the law in its three "
+      "forms: the reduced law with the current <var>ν</var> in Eqs. 2.17 and 2.18 (closed form), the same as "
+      "rate equations (rate form), and the coupled law of Eq. 4.16, in which stress and fabric act on each "
+      "other. The scale of <var>s</var><sub>dev</sub> leaves out where <var>P</var>* is below a hundredth of "
+      "its largest value. In the tables: mean over seeds, each seed in brackets. Scatter between seeds: the "
+      "same relative distance between two packings of the DEM itself, mean over pairs; a law that met the "
+      "mean of all packings would still miss each of them by about 0.7 of it.</p>\n"_html;
   std::size_t n = 0;
   for (const TestPredictions& test : tests) section += test_figure(inputs, test, ++n);
   return section;

@@ -4,6 +4,7 @@
 #include "grainlaw/apps/report/numbers.hpp"
 #include "grainlaw/apps/report/prose.hpp"
 #include "grainlaw/apps/report/sections.hpp"
+#include "grainlaw/element/version.hpp"
 
 namespace grainlaw::report {
 namespace {
@@ -52,7 +53,49 @@ Markup warnings(const Inputs& inputs) {
   return "<h3 id=\"warnings\">Warnings</h3>\n"_html + list;
 }
 
+/// How many runs have each value of something, in order of appearance; runs without a value do not count.
+using Tally = std::vector<std::pair<std::string, std::size_t>>;
+
+template <class Value>
+Tally tally(const Inputs& inputs, const Value& value_of) {
+  Tally tally;
+  for (const Run& run : inputs.runs) {
+    const std::string value = value_of(run.provenance);
+    if (value.empty()) continue;
+    auto entry = std::find_if(tally.begin(), tally.end(), [&](const auto& t) { return t.first == value; });
+    if (entry == tally.end()) entry = tally.insert(tally.end(), {value, 0});
+    ++entry->second;
+  }
+  return tally;
+}
+
+Markup list(const Tally& tally) {
+  std::vector<Markup> pieces;
+  for (const auto& [value, runs] : tally)
+    pieces.push_back(text(value + " (" + std::to_string(runs) + (runs == 1 ? " run)" : " runs)")));
+  return join(pieces, ", "_html);
+}
+
 }  // namespace
+
+std::string build_name(const std::string& version, const std::string& commit) {
+  return commit.empty() ? version : version + ", commit " + commit;
+}
+
+Markup other_builds(const Inputs& inputs) {
+  Tally builds = tally(inputs, [](const Json& provenance) {
+    return build_name(text_in(provenance, "version"), text_in(provenance, "commit"));
+  });
+  std::erase_if(builds, [](const auto& b) { return b.first == build_name(version(), commit()); });
+  const Tally sets = tally(inputs, [](const Json& provenance) { return text_in(provenance, "simd"); });
+  std::vector<Markup> pieces;
+  if (!builds.empty()) pieces.push_back("by another grainlaw than this report: "_html + list(builds));
+  if (sets.size() > 1) pieces.push_back("with different instruction sets: "_html + list(sets));
+  if (pieces.empty()) return {};
+  return element("p", "<b>Warning</b>: records were made "_html + join(pieces, "; "_html) + "."_html,
+                 {{"class", "gaps"}}) +
+         "\n"_html;
+}
 
 Markup provenance_section(const Inputs& inputs) {
   const bool any = std::any_of(inputs.runs.begin(), inputs.runs.end(),

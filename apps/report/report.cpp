@@ -4,6 +4,7 @@
 #include "grainlaw/apps/report/sections.hpp"
 #include "grainlaw/apps/report/style.hpp"
 #include "grainlaw/element/file.hpp"
+#include "grainlaw/element/version.hpp"
 
 namespace grainlaw::report {
 namespace {
@@ -28,23 +29,17 @@ Markup gaps(const Inputs& inputs) {
   }
   return element(
              "div",
-             "<p><b>This report is incomplete.</b> It shows what is on disk; the following is missing:</p>\n"_html +
+             "<p><b>This report is incomplete.</b> It shows what is on disk; the following is missing or cannot be read:</p>\n"_html +
                  element("ul", items),
              {{"class", "gaps"}}) +
          "\n"_html;
 }
 
 Markup header(const Inputs& inputs, const std::string& title) {
-  Markup lead = "Constitutive laws for granular matter, calibrated from the grains up"_html;
-  for (const Run& run : inputs.runs) {
-    const std::string version = text_in(run.provenance, "version"),
-                      commit = text_in(run.provenance, "commit");
-    if (version.empty()) continue;
-    lead = "grainlaw "_html + text(version) + (commit.empty() ? Markup() : text(" (" + commit + ")")) +
-           ": constitutive laws for granular matter, calibrated from the grains up"_html;
-    break;
-  }
-  return element("h1", text(title)) + "\n"_html + element("p", lead, {{"class", "lead"}}) + "\n"_html;
+  const Markup lead = text("grainlaw " + build_name(version(), commit()) +
+                           ": constitutive laws for granular matter, calibrated from the grains up");
+  return element("h1", text(title)) + "\n"_html + element("p", lead, {{"class", "lead"}}) + "\n"_html +
+         other_builds(inputs);
 }
 
 Markup contents(const std::vector<Section>& sections) {
@@ -55,10 +50,7 @@ Markup contents(const std::vector<Section>& sections) {
   return element("nav", links) + "\n"_html;
 }
 
-}  // namespace
-
-std::string report_html(const std::filesystem::path& dir) {
-  const Inputs inputs = read_inputs(dir);
+std::string page_of(const Inputs& inputs) {
   const std::vector<FitView> fits = fit_views(inputs);
   const std::vector<Section> sections{
       {"run", "What was run", what_was_run(inputs)},
@@ -84,6 +76,14 @@ std::string report_html(const std::filesystem::path& dir) {
   return "<!DOCTYPE html>\n" + element("html", page, {{"lang", "en"}}).str() + "\n";
 }
 
-void write_report(const std::filesystem::path& dir) { write_file(dir / "report.html", report_html(dir)); }
+}  // namespace
+
+std::string report_html(const std::filesystem::path& dir) { return page_of(read_inputs(dir)); }
+
+std::vector<Gap> write_report(const std::filesystem::path& dir) {
+  const Inputs inputs = read_inputs(dir);
+  write_file(dir / "report.html", page_of(inputs));
+  return inputs.gaps;
+}
 
 }  // namespace grainlaw::report

@@ -3,6 +3,9 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
+
+#include "grainlaw/apps/report/inputs.hpp"
 
 namespace grainlaw::report {
 
@@ -11,7 +14,7 @@ namespace grainlaw::report {
 /// the same bytes. Throws Error if `dir` holds nothing of a campaign, or gnuplot is not installed or fails.
 std::string report_html(const std::filesystem::path& dir);
 
-/// Writes report_html(dir) to dir/report.html, whole or not at all.
-void write_report(const std::filesystem::path& dir);
+/// Writes report_html(dir) to dir/report.html, whole or not at all. Returns what was missing or unreadable.
+std::vector<Gap> write_report(const std::filesystem::path& dir);
 
 }  // namespace grainlaw::report

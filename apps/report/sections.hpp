@@ -13,12 +13,16 @@ Markup what_was_run(const Inputs& inputs);
 Markup headline(const Inputs& inputs, const std::vector<FitView>& fits);
 /// Each fit with its data and curve, then residual, condition and exit.
 Markup fits_section(const Inputs& inputs, const std::vector<FitView>& fits);
-/// Predictions of tests that no fit has seen, over the DEM's points.
+/// Predictions of tests that no fit behind them has seen, over the DEM's points.
 Markup predictions_section(const Inputs& inputs);
 /// Where the time went.
 Markup time_section(const Inputs& inputs);
 /// Versions, commits, compilers, and what the runs warned of.
 Markup provenance_section(const Inputs& inputs);
+/// A warning where records come from another build than this program, or from several instruction sets.
+Markup other_builds(const Inputs& inputs);
+/// "0.1.0, commit abc1234".
+std::string build_name(const std::string& version, const std::string& commit);
 /// Every symbol and word in one line.
 Markup glossary_section();
 
@@ -33,6 +37,9 @@ Markup other_figures(const std::vector<FitView>& fits);
 
 /// The parameters beside the thesis's.
 Markup parameter_tables(const Inputs& inputs, const std::vector<FitView>& fits);
+
+/// A warning where predictions.json was made with another parameter set than parameters.json holds.
+Markup outdated_predictions(const Inputs& inputs);
 
 /// A paragraph that says why there is nothing to show.
 Markup absent(const std::string& what);

@@ -46,7 +46,7 @@ table.matrix td, table.matrix th { padding-right: 1.8rem; }
 .good { color: var(--good); font-weight: 600; white-space: nowrap; }
 .off { color: var(--off); font-weight: 600; white-space: nowrap; }
 .far, .bad { color: var(--bad); font-weight: 600; }
-.far { white-space: nowrap; }
+.far { white-space: nowrap; text-decoration: underline; text-underline-offset: .15em; }
 figure { margin: 1.2rem 0 1.8rem; }
 .legend { display: flex; flex-wrap: wrap; gap: .15rem 1.3rem; font-size: .84rem; margin-bottom: .4rem; }
 .legend span { white-space: nowrap; }

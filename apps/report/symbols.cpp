@@ -238,4 +238,9 @@ std::string nth_colour(std::size_t n) {
   return colours[n % colours.size()];
 }
 
+std::string seed_grey(std::size_t n) {
+  static const std::array<const char*, 3> greys{"#666666", "#b0b0b0", "#8a8a8a"};
+  return greys[n % greys.size()];
+}
+
 }  // namespace grainlaw::report

@@ -51,6 +51,8 @@ std::string mode_colour(const std::string& mode);
 std::string form_colour(const std::string& form);
 /// Colour of the n-th of several runs.
 std::string nth_colour(std::size_t n);
+/// Shade of grey for the DEM's points of the n-th seed; after three they begin again.
+std::string seed_grey(std::size_t n);
 inline constexpr const char* measured_colour = "#808080";
 inline constexpr const char* ink = "black";  ///< drawn in the page's own text colour
 

@@ -29,7 +29,8 @@ Markup turning_points(const std::vector<double>& column, int decimals) {
   if (many) return text(number(low, 3) + " … " + number(high, 3));
   std::vector<Markup> pieces;
   for (const double turn : turns) pieces.push_back(text(number(turn, 3)));
-  return join(pieces, " → "_html);
+  const Markup line = join(pieces, " → "_html);
+  return turns.size() > 3 ? line : element("span", line, {{"class", "whole"}});
 }
 
 std::optional<double> largest_pressure(const Run& run) {

@@ -47,7 +47,7 @@ TEST_F(BadInput, UnknownKey) {
 
 TEST_F(BadInput, WrongType) {
   EXPECT_TRUE(refuses(simulate(scene("1e5", R"("stiff")")),
-                      {"s.json: material.k: must be a number > 0, got \"stiff\""}));
+                      {"s.json: material.k: must be a number >= 1e-15 and <= 1e+15, got \"stiff\""}));
   EXPECT_TRUE(refuses(simulate(scene("64", "64.5")),
                       {"s.json: preparation.count: must be a whole number", "got 64.5"}));
   EXPECT_TRUE(refuses(simulate("[1, 2]"), {"s.json: must be an object", "got [1,2]"}));
@@ -82,7 +82,8 @@ TEST_F(BadInput, NumbersOutOfRange) {
       refuses(simulate(scene(R"("w": 3)", R"("w": 0.5)")), {"s.json: material.w: must be >= 1", "got 0.5"}));
   EXPECT_TRUE(refuses(simulate(scene("64", "7")),
                       {"s.json: preparation.count: must be a whole number from 8", "got 7"}));
-  EXPECT_TRUE(refuses(simulate(scene("1e5", "-1e5")), {"s.json: material.k: must be > 0, got -100000"}));
+  EXPECT_TRUE(refuses(simulate(scene("1e5", "-1e5")),
+                      {"s.json: material.k: must be >= 1e-15 and <= 1e+15, got -100000"}));
   for (const char* nu : {"0", "-0.0", "1", "-0.7", "1.5", "1e308"})
     EXPECT_TRUE(refuses(simulate(scene("0.7", nu)),
                         {"s.json: path.segments[0].controls.nu: must be > 0 and < 1, got"}))
@@ -125,7 +126,10 @@ TEST_F(BadInput, ADirectoryThatHoldsSomething) {
   EXPECT_TRUE(
       refuses(run({"calibrate", "c.json", "-o", "mine"}), {"mine: is not empty and holds no campaign"}));
   EXPECT_TRUE(refuses(run({"calibrate", "c.json", "-o", "mine", "--resume"}),
-                      {"mine: is not empty and holds no campaign"}));
+                      {"mine: holds no campaign to go on with"}));
+  EXPECT_TRUE(
+      refuses(run({"calibrate", "-o", "mispelt", "--resume"}), {"mispelt: holds no campaign to go on with"}));
+  EXPECT_FALSE(fs::exists(folder / "mispelt"));
   EXPECT_TRUE(refuses(run({"calibrate", "c.json", "-o", "mine/notes.txt"}), {"mine/notes.txt: is a file"}));
   EXPECT_THAT(listing("mine"), testing::ElementsAre("notes.txt"));
 }
@@ -151,7 +155,52 @@ TEST_F(BadInput, AFolderThatCannotBeMade) {
   EXPECT_TRUE(refuses(run({"calibrate", "c.json", "-o", "/proc/no/out"}), {"/proc/no/out: cannot be made"}));
   EXPECT_TRUE(
       refuses(run({"predict", "data/thesis/parameters.json", "data/paths/uni.json", "-o", "no/p.csv"}),
-              {"no/p.csv: cannot be written: No such file or directory"}));
+              {"-o: must lie in a directory that exists, got no/p.csv"}));
+}
+
+TEST_F(BadInput, AnOutputThatIsAnInput) {
+  write("s.json", scene());
+  ASSERT_EQ(run({"simulate", "s.json", "-o", "r/one"}).status, 0);
+  const std::string record = read("r/one/record.csv");
+  fs::copy_file(folder / "data/thesis/parameters.json", folder / "p.json");
+  const std::string parameters = read("p.json");
+  EXPECT_TRUE(
+      refuses(run({"predict", "p.json", "data/paths/uni.json", "-o", "p.json"}), {"-o: must not be p.json"}));
+  EXPECT_TRUE(refuses(run({"predict", "p.json", "r/one", "-o", "r/one/record.csv"}),
+                      {"-o: must not be r/one/record.csv"}));
+  EXPECT_TRUE(refuses(run({"fit", "r", "-o", "r/one/record.csv"}), {"-o: must not be r/one/record.csv"}));
+  EXPECT_TRUE(refuses(run({"fit", "r", "-o", "f.json", "--fits", "./f.json"}),
+                      {"--fits: must be another file than -o"}));
+  EXPECT_TRUE(
+      refuses(run({"fit", "r", "-o", "f.json", "--fits", "no/f.json"}), {"--fits: must lie in a directory"}));
+  EXPECT_EQ(read("r/one/record.csv"), record);
+  EXPECT_EQ(read("p.json"), parameters);
+  EXPECT_FALSE(fs::exists(folder / "f.json"));
+}
+
+TEST_F(BadInput, NumbersBeyondSense) {
+  for (const char* k : {"1e308", "1e-300", "0", "-0.0"})
+    EXPECT_TRUE(refuses(simulate(scene("1e5", k)), {"s.json: material.k: must be >= 1e-15"})) << k;
+  EXPECT_TRUE(refuses(simulate(scene("1e-3", "1e308")), {"s.json: preparation.rate: must be > 0 and <= "}));
+  write("p.json", R"({"start": {"nu": 0.7, "P": 1e308}, "segments": [{"mode": "uni", "amount": 0.01}]})");
+  EXPECT_TRUE(refuses(run({"predict", "data/thesis/parameters.json", "p.json", "--si"}),
+                      {"p.json: start.P: must be"}));
+  write("p.json", R"({"start": {"nu": 0.7}, "segments": [{"mode": "d2", "controls": {"eps_dev": 1e308}}]})");
+  EXPECT_TRUE(refuses(run({"predict", "data/thesis/parameters.json", "p.json"}),
+                      {"p.json: segments[0].controls.eps_dev: must be >= -100 and <= 100"}));
+}
+
+TEST_F(BadInput, ARecordThatNoPackingCanHave) {
+  write("s.json", scene());
+  ASSERT_EQ(run({"simulate", "s.json", "-o", "r/one"}).status, 0);
+  const std::string table = read("r/one/record.csv");
+  write("r/one/record.csv", table.substr(0, table.rfind('\n', table.size() - 2) + 1));  // a line less
+  EXPECT_TRUE(refuses(run({"fit", "r"}), {"r/one/record.csv: must have ", "rows as its scene says, got "}));
+  const auto line = table.find('\n') + 1;
+  const auto nu =
+      table.find(",0.", line);  // eps_vol and eps_dev are 0 in the first row, written without a point
+  write("r/one/record.csv", table.substr(0, nu) + ",-7." + table.substr(nu + 3));
+  EXPECT_TRUE(refuses(run({"fit", "r"}), {"r/one/record.csv: nu: line 2: must be > 0 and < 1, got -7."}));
 }
 
 TEST_F(BadInput, CommandLines) {

@@ -4,7 +4,7 @@ execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX} O
 
 foreach(room element dem model calibrate)
   file(GLOB_RECURSE headers RELATIVE ${SOURCE} ${SOURCE}/${room}/*.hpp)
-  list(FILTER headers EXCLUDE REGEX "snapshot_hdf5[.]hpp$")  # private to the library
+  list(FILTER headers EXCLUDE REGEX "(snapshot_hdf5|-inl)[.]hpp$")  # private to the library
   foreach(header IN LISTS headers)
     if(NOT EXISTS ${PREFIX}/include/grainlaw/${header})
       message(SEND_ERROR "not installed: include/grainlaw/${header}")

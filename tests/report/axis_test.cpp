@@ -48,6 +48,17 @@ TEST(ReportAxis, LabelsNeverRepeatAndStayInside) {
   }
 }
 
+TEST(ReportAxis, HasAtLeastThreeTicsWhereAsked) {
+  EXPECT_EQ(make_axis({-0.02, 6.3}, 3).tics.size(), 2u);
+  for (double high = 1; high < 10; high += 0.13) {
+    for (const double unit : {1.0, 5e7}) {
+      const Axis axis = make_axis({-0.02, high}, 6, unit, 3);
+      EXPECT_GE(axis.tics.size(), 3u) << high << " " << unit;
+      EXPECT_LE(axis.tics.size(), 12u) << high << " " << unit;
+    }
+  }
+}
+
 TEST(ReportAxis, PadsRangesAndCopesWithNoneAndOne) {
   const auto padded = padded_range({0.0, std::nan(""), 1.0, INFINITY});
   EXPECT_DOUBLE_EQ(padded[0], -0.05);

@@ -12,6 +12,8 @@
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/json.hpp"
+#include "grainlaw/element/record.hpp"
+#include "grainlaw/element/version.hpp"
 #include "synthetic.hpp"
 #include "well_formed.hpp"
 
@@ -20,6 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -111,6 +114,24 @@ TEST_F(ReportTest, PutsOurParametersBesideTheThesis) {
       HasSubstr("8.69 ± 0.12</span><div class=\"under\">thesis 8.272 <span class=\"far\">+3.5 σ</span>"));
 }
 
+TEST_F(ReportTest, MarksDifferencesAsItSays) {
+  test::write_synthetic_campaign(dir_);
+  const auto html_at = [&](double sigmas) {
+    edit("parameters.json", [&](Json& json) {
+      json["isotropic"]["iso"]["C1"]["value"] = 8.2720 + sigmas * 0.12;
+      json["isotropic"]["iso"]["C1"]["stderr"] = 0.12;
+    });
+    return report_html(dir_);
+  };
+  EXPECT_THAT(html_at(1.5), HasSubstr("<span class=\"near\">+1.5 σ</span>"));
+  EXPECT_THAT(html_at(2.5), HasSubstr("<span class=\"off\">+2.5 σ</span>"));
+  const std::string html = html_at(3.5);
+  EXPECT_THAT(html, HasSubstr("<span class=\"far\">+3.5 σ</span>"));
+  EXPECT_THAT(html, HasSubstr("bold beyond 2\u00a0σ, underlined as well beyond 3\u00a0σ"));
+  EXPECT_TRUE(std::regex_search(html, std::regex("\\.far \\{[^}]*underline")));
+  EXPECT_THAT(html, Not(HasSubstr("combined standard error")));
+}
+
 TEST_F(ReportTest, SaysWhichNumbersWereNotFitted) {
   test::write_synthetic_campaign(dir_);
   const std::string html = report_html(dir_);
@@ -152,6 +173,72 @@ TEST_F(ReportTest, ShowsThatAPredictionStopped) {
   edit("predictions.json",
        [](Json& json) { json["predictions"][2]["status"] = "failed: <0.1> is too stiff"; });
   EXPECT_THAT(page().text, HasSubstr("failed: <0.1> is too stiff"));
+}
+
+TEST_F(ReportTest, SaysHowFarTheSeedsLieApart) {
+  test::write_synthetic_campaign(dir_);
+  Record first = Record::read_csv(dir_ / "records/uni-0.69-s1/record.csv");
+  for (double& P : first["P"]) P = 1;
+  first.write_csv(dir_ / "records/uni-0.69-s1/record.csv");
+  for (double& P : first["P"]) P = 1.1;
+  first.write_csv(dir_ / "records/uni-0.69-s2/record.csv");
+  // 0.1 / sqrt((1 + 1.1^2) / 2)
+  EXPECT_THAT(page().text, HasSubstr("scatter between seeds9.5 %"));
+}
+
+TEST_F(ReportTest, TellsSeedsApartByTheirGrey) {
+  test::write_synthetic_campaign(dir_);
+  const std::string html = report_html(dir_);
+  const std::string figure = html.substr(html.find("id=\"figure-prediction-1\""));
+  const auto colour_of = [&](const std::string& label) {
+    const std::string group = figure.substr(figure.find("<title>" + label + "</title>"));
+    std::smatch found;
+    return std::regex_search(group, found, std::regex("rgb\\([^)]*\\)")) ? found.str() : "";
+  };
+  EXPECT_EQ(colour_of("DEM, seed 1"), "rgb(102, 102, 102)");
+  EXPECT_EQ(colour_of("DEM, seed 2"), "rgb(176, 176, 176)");
+  const std::string legend = figure.substr(0, figure.find("class=\"plot\""));
+  EXPECT_THAT(legend, HasSubstr("</svg>DEM</span>"));
+  EXPECT_THAT(legend, Not(HasSubstr("seed")));
+}
+
+TEST_F(ReportTest, DoesNotClaimThatNoFitReadThePredictedTests) {
+  test::write_synthetic_campaign(dir_);  // fits the uniaxial tests, for comparison
+  const auto text = page().text;
+  EXPECT_THAT(text, HasSubstr("tests that no fit behind these parameters has read"));
+  EXPECT_THAT(text, Not(HasSubstr("tests that no fit has read")));
+}
+
+TEST_F(ReportTest, SaysThatPredictionsAreOfOtherParameters) {
+  test::write_synthetic_campaign(dir_);
+  const auto text_with = [&](const Json& parameters_digest) {
+    edit("predictions.json", [&](Json& json) { json["parameters_digest"] = parameters_digest; });
+    return page().text;
+  };
+  const std::string note = "made with another parameter set than parameters.json holds now";
+  EXPECT_THAT(page().text, Not(HasSubstr(note)));
+  EXPECT_THAT(text_with(digest(read_file(dir_ / "parameters.json"))), Not(HasSubstr(note)));
+  EXPECT_THAT(text_with(digest("other")), HasSubstr(note));
+  fs::remove(dir_ / "parameters.json");
+  EXPECT_THAT(text_with(digest("other")), Not(HasSubstr(note)));
+}
+
+TEST_F(ReportTest, NamesItsOwnBuildAndRecordsOfOthers) {
+  test::write_synthetic_campaign(dir_);
+  const auto text = page().text;
+  EXPECT_THAT(text, HasSubstr("grainlaw " + version() + ", commit " + commit() + ": constitutive laws"));
+  EXPECT_THAT(text, HasSubstr("another grainlaw than this report: 0.1.0, commit abc1234 (18 runs)."));
+  for (const auto& record : fs::directory_iterator(dir_ / "records")) {
+    edit(fs::relative(record.path(), dir_) / "provenance.json", [](Json& json) {
+      json["version"] = version();
+      json["commit"] = commit();
+    });
+  }
+  EXPECT_THAT(page().text, Not(HasSubstr("Warning: records")));
+  edit("records/iso-s1/provenance.json", [](Json& json) { json["simd"] = "sse2"; });
+  EXPECT_THAT(page().text,
+              HasSubstr("Warning: records were made with different instruction sets: sse2 (1 run), "
+                        "AVX2 (17 runs)."));
 }
 
 TEST_F(ReportTest, ExplainsItsSymbols) {
@@ -204,6 +291,31 @@ TEST_F(ReportTest, RefusesAFolderThatHoldsNothing) {
 /// What may happen to a file.
 enum class Harm { gone, cut, empty_object, wrong_type };
 
+/// "missing" or "unreadable" with each file that the report could not show, in alphabetical order.
+std::vector<std::string> names_of(const std::vector<Gap>& gaps) {
+  std::vector<std::string> names;
+  for (const Gap& gap : gaps)
+    names.push_back((gap.kind == Gap::Kind::missing ? "missing " : "unreadable ") + gap.file);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST_F(ReportTest, TellsUnreadableFilesFromMissingOnes) {
+  test::write_synthetic_campaign(dir_);
+  EXPECT_THAT(write_report(dir_), IsEmpty());
+  write_file(dir_ / "campaign.json", "[");
+  write_file(dir_ / "fits.json", "{}");
+  write_file(dir_ / "parameters.json", "{}");
+  fs::remove(dir_ / "timing.json");
+  Record record = Record::read_csv(dir_ / "records/iso-s1/record.csv");
+  std::string csv = record.to_csv();
+  write_file(dir_ / "records/iso-s1/record.csv", csv.replace(csv.find(",s_dev,"), 7, ",other,"));
+  EXPECT_THAT(names_of(write_report(dir_)),
+              ElementsAre("missing timing.json", "unreadable campaign.json", "unreadable fits.json",
+                          "unreadable parameters.json", "unreadable records/iso-s1/record.csv"));
+  EXPECT_TRUE(fs::exists(dir_ / "report.html"));
+}
+
 class DamagedReport : public ReportTest,
                       public ::testing::WithParamInterface<std::tuple<const char*, Harm>> {};
 
@@ -220,12 +332,11 @@ TEST_P(DamagedReport, SaysWhatIsMissing) {
     std::ofstream(dir_ / file) << (csv ? "nu,eps_dev\n0.7,nan\n"
                                        : R"([{"fits": 3, "stages": "x", "material": []}])");
   }
-  const auto parsed = page();
+  const auto gaps = names_of(write_report(dir_));
+  const auto parsed = test::parse(read_file(dir_ / "report.html"));
   EXPECT_THAT(parsed.problems, IsEmpty());
-  const bool unreadable = harm == Harm::gone || (harm == Harm::cut && !csv) || (csv && harm != Harm::cut);
-  if (unreadable) {
-    EXPECT_THAT(parsed.text, HasSubstr(file));
-  }
+  EXPECT_THAT(gaps, Contains((harm == Harm::gone ? "missing " : "unreadable ") + std::string(file)));
+  EXPECT_THAT(parsed.text, HasSubstr(file));
   EXPECT_FALSE(std::regex_search(parsed.text, std::regex("\\b(nan|inf)\\b")) && harm != Harm::wrong_type);
 }
 

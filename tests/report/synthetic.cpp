@@ -74,7 +74,7 @@ std::vector<double> state_row(const std::vector<std::string>& columns, const std
   const bool jammed = nu > model::jamming_density(curve);
   const double C = model::coordination(curve.contacts, nu);
   const double P = model::pressure(curve, nu) * (1 + 0.01 * scatter * random());
-  const double phi = model::rattlers(curve.contacts, nu) + 0.004 * scatter * random();
+  const double phi = std::max(0.0, model::rattlers(curve.contacts, nu) + 0.004 * scatter * random());
   std::map<std::string, double> row{
       {"segment", segment},
       {"eps_vol", std::log(nu / nu_0)},
@@ -384,7 +384,7 @@ void add_isotropic_fits(Json& fits, const Synthetic& options, const std::string&
       fit["parameters"].push_back(fit_parameter(parameter, row[parameter], held));
     }
     if (name == "C_star_free_C0") fit["parameters"][0].update({{"value", 6.31}, {"stderr", 0.08}});
-    if (mode == "iso") fit["parameters"].back()["shift_at_twice_P_min"] = -0.0003;
+    if (mode == "iso") fit["parameters"].back()["shift_at_four_P_min"] = -0.0003;
     fit["curve"] = curve(0.6651, 0.82, packing_value(name, fitted_curve(row)));
     fit["thesis_curve"] = curve(0.6651, 0.82, packing_value(name, pressure_curve(mode)));
     fits.push_back(fit);

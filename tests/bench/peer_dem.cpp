@@ -1,0 +1,78 @@
+// Our side of the comparison with another DEM code (see peer_lammps): writes a packing of ours in LAMMPS's
+// data format, or lets it flow and says how fast that was and what came out.
+//   grainlaw_bench_peer_dem data SNAPSHOTS.h5 FILE RATE        the last frame, velocities with the flow of D2
+//   at RATE grainlaw_bench_peer_dem run SNAPSHOTS.h5 STEPS FRACTION RATE  STEPS of FRACTION t_c: speed,
+//   stress, contacts
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <string>
+
+#include "grainlaw/dem/drive.hpp"
+#include "grainlaw/dem/dynamics.hpp"
+#include "grainlaw/dem/snapshot.hpp"
+
+namespace {
+
+using namespace grainlaw;
+
+void write_data(const dem::State& state, const Material& material, double rate, const char* file) {
+  std::FILE* out = std::fopen(file, "w");
+  if (out == nullptr) std::perror(file), std::exit(1);
+  std::fprintf(out, "packing of grainlaw; mm, us, ug\n\n%zu atoms\n1 atom types\n", state.count());
+  const char* axes = "xyz";
+  for (std::size_t c = 0; c < 3; ++c)
+    std::fprintf(out, "0 %.17g %clo %chi\n", state.box[c], axes[c], axes[c]);
+  std::fprintf(out, "\nAtoms # sphere\n\n");
+  for (std::size_t i = 0; i < state.count(); ++i)
+    std::fprintf(out, "%zu 1 %.17g %.17g %.17g %.17g %.17g\n", i + 1, 2 * state.radius[i], material.rho,
+                 state.position[i][0], state.position[i][1], state.position[i][2]);
+  std::fprintf(out, "\nVelocities\n\n");
+  for (std::size_t i = 0; i < state.count(); ++i) {
+    const auto &x = state.position[i], &v = state.velocity[i];
+    std::fprintf(out, "%zu %.17g %.17g %.17g 0 0 0\n", i + 1, v[0] + rate * x[0], v[1] - rate * x[1], v[2]);
+  }
+  if (std::fclose(out) != 0) std::perror(file), std::exit(1);
+}
+
+void print(const char* when, const dem::Measurement& m) {
+  std::printf("%s stress %.15g %.15g %.15g contacts %llu\n", when, m.stress[0], m.stress[1], m.stress[2],
+              static_cast<unsigned long long>(m.contacts));
+}
+
+void flow(const dem::State& state, const Material& material, std::uint64_t steps, double fraction,
+          double rate) {
+  dem::Dynamics dynamics(material, state);
+  Leg d2{};
+  d2.mode = Mode::d2;
+  d2.duration =
+      static_cast<double>(steps) * dem::time_step(material, dynamics.grains().smallest_radius(), fraction);
+  d2.strain = {-rate * d2.duration, rate * d2.duration, 0};
+  d2.profile = Profile::constant;
+  dem::StepPlan plan = dem::plan_steps(d2, d2.duration, steps);
+  std::printf("dt %.17g\n", plan.dt);
+  print("before", dynamics.measure());
+  const auto begin = std::chrono::steady_clock::now();
+  dem::follow(dynamics, d2, plan, [](std::uint64_t) { return true; });
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  print("after", dynamics.measure());
+  std::printf("speed %.6g\n", static_cast<double>(steps * state.count()) / wall.count() / 1e6);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) try {
+  if (count < 5) return std::fprintf(stderr, "usage: see the head of peer_dem.cpp\n"), 2;
+  const Material material;
+  const dem::State state = dem::read_frame(arguments[2], {});
+  if (std::strcmp(arguments[1], "data") == 0)
+    write_data(state, material, std::atof(arguments[4]), arguments[3]);
+  else if (count == 6)
+    flow(state, material, std::strtoull(arguments[3], nullptr, 10), std::atof(arguments[4]),
+         std::atof(arguments[5]));
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
