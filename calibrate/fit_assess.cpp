@@ -177,6 +177,17 @@ VectorXd variance_from_held(const FitProblem& problem, const MatrixXd& all, cons
   return variance;
 }
 
+/// Its standard error, interval, and whether that is small enough.
+void attach_error(const FitParameter& p, double error, double t, FitEstimate& e) {
+  e.stderr_ = error;
+  e.interval95 = std::pair(e.value - t * error, e.value + t * error);
+  const double size = p.judged_by_value ? std::abs(e.value) : p.scale;
+  if (error <= size) return;
+  e.determined = false;
+  e.reason = "its standard error, " + rounded(error) + ", exceeds its " +
+             (p.judged_by_value ? "value, " : "natural size, ") + rounded(size);
+}
+
 /// Standard errors and intervals of the parameters `inner`, those that are free, off their bounds and not
 /// singular.
 void attach_errors(const FitProblem& problem, const std::vector<std::size_t>& inner, const Linearised& at,
@@ -204,14 +215,7 @@ void attach_errors(const FitProblem& problem, const std::vector<std::size_t>& in
   for (std::size_t j = 0; j < inner.size(); ++j) {
     const FitParameter& p = problem.parameters[inner[j]];
     FitEstimate& e = result.parameters[inner[j]];
-    const double error = std::sqrt(variance[static_cast<Index>(j)]) * p.scale;
-    e.stderr_ = error;
-    e.interval95 = std::pair(e.value - t * error, e.value + t * error);
-    const double size = p.judged_by_value ? std::abs(e.value) : p.scale;
-    if (error <= size) continue;
-    e.determined = false;
-    e.reason = "its standard error, " + rounded(error) + ", exceeds its " +
-               (p.judged_by_value ? "value, " : "natural size, ") + rounded(size);
+    attach_error(p, std::sqrt(variance[static_cast<Index>(j)]) * p.scale, t, e);
   }
 }
 
@@ -246,6 +250,36 @@ std::vector<std::size_t> estimates_of(const FitProblem& problem, const Minimum& 
   return inner;
 }
 
+/// The result of several packings: the mean of what each says.
+FitResult result_of_mean(const FitProblem& problem, const std::vector<std::size_t>& free,
+                         const GroupMean& mean, const Minimum& pooled) {
+  FitResult result;
+  result.ran = true;
+  result.n = all_points(problem).size();
+  result.rms = mean.rms;
+  result.condition = mean.condition;
+  result.n_effective = mean.n_effective;
+  result.degrees_of_freedom = static_cast<double>(mean.groups - 1);
+  result.stderr_from = "scatter over seeds";
+  result.starts = pooled.starts;
+  result.best_found = pooled.best_found;
+  result.exit =
+      "converged for each of " + std::to_string(mean.groups) + " seeds alone; values are their weighted mean";
+  if (!mean.left_out.empty()) result.exit += " (seed " + mean.left_out + " rests on a bound and is left out)";
+  Minimum at = pooled;
+  at.values = mean.values;
+  FitProblem unbounded = problem;  // a mean may lie where the lowest row of all seeds would not let it
+  for (const std::size_t i : free) {
+    unbounded.parameters[i].low = -1e100;
+    unbounded.parameters[i].high = 1e100;
+  }
+  estimates_of(unbounded, at, result);
+  const double t = student_t_quantile(0.95, result.degrees_of_freedom);
+  for (const std::size_t i : free)
+    attach_error(problem.parameters[i], mean.errors[i], t, result.parameters[i]);
+  return result;
+}
+
 }  // namespace
 
 std::vector<FitPoint> all_points(const FitProblem& problem) {
@@ -273,6 +307,8 @@ FitResult assess(const FitProblem& problem) {
   const std::vector<std::size_t> free = free_parameters(problem);
   const Weighted best = problem.points == Points::runs ? minimise_runs(problem, free, start)
                                                        : minimise_rows(problem, free, start);
+  if (const auto mean = mean_over_groups(problem, free, best.minimum.values))
+    return result_of_mean(problem, free, *mean, best.minimum);
   FitResult result;
   result.ran = true;
   result.n = best.weights.size();

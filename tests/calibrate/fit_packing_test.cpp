@@ -215,8 +215,35 @@ TEST(PackingFits, ASeedThatJamsLaterIsNotHeldBelowTheLowestRowOfAll) {
   const FitResult contacts = fit(contacts_problem(seeds, Points::rows, {}));
   EXPECT_NEAR(*contacts["nu_c_contacts"].stderr_, 0.002 / std::sqrt(3.0), 1e-6);
   EXPECT_EQ(contacts.stderr_from, "scatter over seeds");
+  // A law through the rows of all would be bent; each seed alone lies on its own.
+  expect_value(contacts, "nu_c_contacts", 0.662);
+  expect_value(contacts, "C1", iso.C1);
+  expect_value(contacts, "alpha", iso.alpha);
+  EXPECT_LT(contacts.rms, 1e-6);
   const FitResult pressure = fit(pressure_problem(seeds, Points::rows, {}));
   EXPECT_NEAR(*pressure["nu_c"].stderr_, 0.002 / std::sqrt(3.0), 1e-6);
+}
+
+TEST(PackingFits, ASeedThatSaysLittleCountsLittle) {
+  // The fourth has only states far from jamming, with an error in C* that grows there: its C0 is far off, and
+  // it knows.
+  auto seeds = seeds_jamming_at({0.660, 0.662, 0.664, 0.662});
+  Noise noise(3);
+  for (PackingSeries& seed : seeds)
+    for (PackingState& s : seed.states) s.C_star += (seed.group == "4" ? 0.1 : 0.002) * noise.one();
+  const FitResult r = fit(contacts_problem(seeds, Points::rows, {{"C0", 6}}, true));
+  EXPECT_THAT(r.exit, testing::StartsWith("converged for each of 4 seeds alone"));
+  EXPECT_NEAR(r.value("C0"), 6, 3 * *r["C0"].stderr_);
+  EXPECT_LT(*r["C0"].stderr_, 0.03);
+}
+
+TEST(PackingFits, ASeedOnABoundIsLeftOutWhereThreeRemain) {
+  auto seeds = seeds_jamming_at({0.660, 0.661, 0.662, 0.663});
+  for (PackingState& s : seeds[3].states) s.P *= 1 - 8 * std::log(s.nu / 0.663);
+  const FitResult r = fit(pressure_problem(seeds, Points::rows, {}));
+  EXPECT_THAT(r.exit, testing::HasSubstr("3 seeds alone"));
+  EXPECT_THAT(r.exit, testing::HasSubstr("(seed 4 rests on a bound and is left out)"));
+  expect_value(r, "nu_c", 0.661);
 }
 
 TEST(PackingFits, ASeedOnABoundIsNamed) {
