@@ -19,7 +19,8 @@ endforeach()
 if(TARGET grainlaw_program)
   install(TARGETS grainlaw_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/ DESTINATION ${grainlaw_data_dir} PATTERN *.py EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/ DESTINATION ${grainlaw_data_dir} PATTERN *.py EXCLUDE
+        PATTERN records EXCLUDE)  # of campaigns: for the tests and for readers of the source tree
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(

@@ -40,7 +40,7 @@ plot record("uni-0.695-s1") using "eps_vol":"P" with points pt 7 lc rgb blue, \
 set title "predicted: D2 reversed, ν = 0.711"
 set xlabel "deviatoric strain ε_{dev}"
 set ylabel "deviatoric stress and fabric"
-set key at graph 0.78,0.5
+set key at graph 0.55,0.56
 set xtics 0.2
 set yrange [-0.3:0.3]
 plot record("d2-cycle-s1") using "eps_dev":"s_dev" with points pt 7 lc rgb red, \

@@ -114,8 +114,14 @@ def check_examples(schemas, data):
             if reason:
                 faults.append(f"{file.relative_to(data)}: {reason}")
     known = {data / folder for folder in kinds} | {data / "schema"}
-    faults += [f"{file.relative_to(data)}: under no schema"
-               for file in data.rglob("*.json") if file.parent not in known]
+    for file in sorted(data.rglob("*.json")):
+        if file.parent in known:
+            continue
+        count += 1
+        recorded = (data / "records") in file.parents and f"{file.stem}.schema.json" in schemas.each
+        reason = schemas.complaint(f"{file.stem}.schema.json", load(file)) if recorded else "under no schema"
+        if reason:
+            faults.append(f"{file.relative_to(data)}: {reason}")
     return faults, count
 
 
