@@ -53,6 +53,7 @@ void flow(const dem::State& state, const Material& material, std::uint64_t steps
   d2.profile = Profile::constant;
   dem::StepPlan plan = dem::plan_steps(d2, d2.duration, steps);
   std::printf("dt %.17g\n", plan.dt);
+  dynamics.start(plan.dt, {rate, -rate, 0});  // so that contacts already feel the flow
   print("before", dynamics.measure());
   const auto begin = std::chrono::steady_clock::now();
   dem::follow(dynamics, d2, plan, [](std::uint64_t) { return true; });

@@ -12,7 +12,7 @@ foreach(room element dem model calibrate)
   endforeach()
 endforeach()
 file(GLOB_RECURSE data RELATIVE ${SOURCE}/data ${SOURCE}/data/*)
-list(FILTER data EXCLUDE REGEX "[.]py$")
+list(FILTER data EXCLUDE REGEX "^records/|[.]py$")  # records of campaigns stay in the source tree
 foreach(file IN LISTS data)
   if(NOT EXISTS ${PREFIX}/share/grainlaw/${file})
     message(SEND_ERROR "not installed: share/grainlaw/${file}")
