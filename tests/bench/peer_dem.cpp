@@ -1,8 +1,7 @@
 // Our side of the comparison with another DEM code (see peer_lammps): writes a packing of ours in LAMMPS's
-// data format, or lets it flow and says how fast that was and what came out.
-//   grainlaw_bench_peer_dem data SNAPSHOTS.h5 FILE RATE        the last frame, velocities with the flow of D2
-//   at RATE grainlaw_bench_peer_dem run SNAPSHOTS.h5 STEPS FRACTION RATE  STEPS of FRACTION t_c: speed,
-//   stress, contacts
+// data format, or lets it flow in D2 and says how fast that was and what came out. Usage:
+//   grainlaw_bench_peer_dem data SNAPSHOTS.h5 FILE
+//   grainlaw_bench_peer_dem run SNAPSHOTS.h5 STEPS TIME_STEP (over t_c) RATE (1/us)
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -18,7 +17,7 @@ namespace {
 
 using namespace grainlaw;
 
-void write_data(const dem::State& state, const Material& material, double rate, const char* file) {
+void write_data(const dem::State& state, const Material& material, const char* file) {
   std::FILE* out = std::fopen(file, "w");
   if (out == nullptr) std::perror(file), std::exit(1);
   std::fprintf(out, "packing of grainlaw; mm, us, ug\n\n%zu atoms\n1 atom types\n", state.count());
@@ -31,8 +30,8 @@ void write_data(const dem::State& state, const Material& material, double rate, 
                  state.position[i][0], state.position[i][1], state.position[i][2]);
   std::fprintf(out, "\nVelocities\n\n");
   for (std::size_t i = 0; i < state.count(); ++i) {
-    const auto &x = state.position[i], &v = state.velocity[i];
-    std::fprintf(out, "%zu %.17g %.17g %.17g 0 0 0\n", i + 1, v[0] + rate * x[0], v[1] - rate * x[1], v[2]);
+    const auto& v = state.velocity[i];
+    std::fprintf(out, "%zu %.17g %.17g %.17g 0 0 0\n", i + 1, v[0], v[1], v[2]);
   }
   if (std::fclose(out) != 0) std::perror(file), std::exit(1);
 }
@@ -53,7 +52,6 @@ void flow(const dem::State& state, const Material& material, std::uint64_t steps
   d2.profile = Profile::constant;
   dem::StepPlan plan = dem::plan_steps(d2, d2.duration, steps);
   std::printf("dt %.17g\n", plan.dt);
-  dynamics.start(plan.dt, {rate, -rate, 0});  // so that contacts already feel the flow
   print("before", dynamics.measure());
   const auto begin = std::chrono::steady_clock::now();
   dem::follow(dynamics, d2, plan, [](std::uint64_t) { return true; });
@@ -65,11 +63,11 @@ void flow(const dem::State& state, const Material& material, std::uint64_t steps
 }  // namespace
 
 int main(int count, char** arguments) try {
-  if (count < 5) return std::fprintf(stderr, "usage: see the head of peer_dem.cpp\n"), 2;
+  if (count < 4) return std::fprintf(stderr, "usage: see the head of peer_dem.cpp\n"), 2;
   const Material material;
   const dem::State state = dem::read_frame(arguments[2], {});
   if (std::strcmp(arguments[1], "data") == 0)
-    write_data(state, material, std::atof(arguments[4]), arguments[3]);
+    write_data(state, material, arguments[3]);
   else if (count == 6)
     flow(state, material, std::strtoull(arguments[3], nullptr, 10), std::atof(arguments[4]),
          std::atof(arguments[5]));
