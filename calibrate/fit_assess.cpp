@@ -250,6 +250,20 @@ std::vector<std::size_t> estimates_of(const FitProblem& problem, const Minimum& 
   return inner;
 }
 
+/// The same for each of the parameters `free` in its own unit; zeros where nothing is held with an error.
+std::vector<double> errors_from_held(const FitProblem& problem, const std::vector<std::size_t>& free,
+                                     const std::vector<double>& values) {
+  std::vector<double> errors(free.size(), 0.0);
+  if (std::none_of(problem.parameters.begin(), problem.parameters.end(),
+                   [](const FitParameter& p) { return p.held && p.held_error > 0; }))
+    return errors;
+  const Linearised at = linearise(problem, values, std::vector<double>(all_points(problem).size(), 1.0));
+  const VectorXd variance = variance_from_held(problem, at.jacobian, columns_of(at.jacobian, free));
+  for (std::size_t j = 0; j < free.size(); ++j)
+    errors[j] = std::sqrt(variance[static_cast<Index>(j)]) * problem.parameters[free[j]].scale;
+  return errors;
+}
+
 /// The result of several packings: the mean of what each says.
 FitResult result_of_mean(const FitProblem& problem, const std::vector<std::size_t>& free,
                          const GroupMean& mean, const Minimum& pooled) {
@@ -275,8 +289,10 @@ FitResult result_of_mean(const FitProblem& problem, const std::vector<std::size_
   }
   estimates_of(unbounded, at, result);
   const double t = student_t_quantile(0.95, result.degrees_of_freedom);
-  for (const std::size_t i : free)
-    attach_error(problem.parameters[i], mean.errors[i], t, result.parameters[i]);
+  const std::vector<double> from_held = errors_from_held(problem, free, mean.values);
+  for (std::size_t j = 0; j < free.size(); ++j)
+    attach_error(problem.parameters[free[j]], std::hypot(mean.errors[free[j]], from_held[j]), t,
+                 result.parameters[free[j]]);
   return result;
 }
 

@@ -66,8 +66,10 @@ std::vector<double> errors_of_mean(const std::vector<std::vector<double>>& estim
   return errors;
 }
 
-/// Start of a fit to one group: `best`, within the group's own bounds.
+/// Start of a fit to one group: `best`, within the group's own bounds. Errors of held parameters are common
+/// to all groups, and no matter of one.
 void start_from(FitProblem& alone, const std::vector<std::size_t>& free, const std::vector<double>& best) {
+  for (FitParameter& p : alone.parameters) p.held_error = 0;
   for (const std::size_t i : free) {
     FitParameter& p = alone.parameters[i];
     p.initial = std::clamp(best[i], p.low, p.high);

@@ -224,6 +224,16 @@ TEST(PackingFits, ASeedThatJamsLaterIsNotHeldBelowTheLowestRowOfAll) {
   EXPECT_NEAR(*pressure["nu_c"].stderr_, 0.002 / std::sqrt(3.0), 1e-6);
 }
 
+TEST(PackingFits, TheErrorOfAHeldValueIsNotAveragedOverSeeds) {
+  // phi_r depends on nu_c only through phi_v nu/nu_c, phi_c exp(phi_v): an error of nu_c shifts phi_v by as
+  // much.
+  const auto seeds = seeds_jamming_at({0.662, 0.662, 0.662, 0.662});
+  const FitResult r = fit(rattlers_problem(seeds, Points::rows, {}, 0.662, 0.662e-3));
+  ASSERT_EQ(r.stderr_from, "scatter over seeds");
+  EXPECT_NEAR(*r["phi_v"].stderr_, 1e-3 * iso.phi_v, 1e-5 * iso.phi_v);
+  EXPECT_NEAR(*r["phi_c"].stderr_, 1e-3 * iso.phi_c * iso.phi_v, 1e-4 * iso.phi_c * iso.phi_v);
+}
+
 TEST(PackingFits, ASeedThatSaysLittleCountsLittle) {
   // The fourth has only states far from jamming, with an error in C* that grows there: its C0 is far off, and
   // it knows.
