@@ -1,7 +1,7 @@
 // The motion kernel: what one step does to every grain between two computations of forces.
 #pragma once
 
-#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/grains.hpp"
 
 namespace grainlaw::dem {

@@ -30,7 +30,7 @@ StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_ste
 }
 
 void follow(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, const AfterStep& after_step) {
-  const Drive drive(dynamics.box().length(), leg);
+  const Drive drive(dynamics.cell().length(), leg);
   dynamics.start(plan.dt, drive.rate(0, plan.dt));
   for (std::uint64_t n = 1; n <= plan.steps; ++n) {
     const double t = n == plan.steps ? leg.duration : static_cast<double>(n) * plan.dt;

@@ -25,20 +25,20 @@ double time_step(const Material& material, double smallest_radius, double fracti
 Dynamics::Dynamics(const Material& material, const State& state)
     : material_(material),
       law_(LinearContact::of(material)),
-      box_(state.box),
+      cell_(state.box),
       grains_(state, material.rho),
       neighbours_(material.r_mean, grains_.largest_radius()),
       time_(state.time_us),
       steps_(state.step) {
-  neighbours_.update(grains_, box_, 0);
+  neighbours_.update(grains_, cell_, 0);
 }
 
 void Dynamics::start(double dt, const Vec3& rate) {
   grains_.motion = velocities();
   dt_ = dt;
-  box_ = Box(box_.length(), rate);
-  if (neighbours_.outdated(grains_, box_)) neighbours_.update(grains_, box_, planned_steps * dt_);
-  contact_forces(law_, neighbours_.pairs(), box_, grains_);
+  cell_ = Cell(cell_.length(), rate);
+  if (neighbours_.outdated(grains_, cell_)) neighbours_.update(grains_, cell_, planned_steps * dt_);
+  contact_forces(law_, neighbours_.pairs(), cell_, grains_);
   for (std::size_t i = 0; i < count(); ++i) {
     const Quad now = acceleration(i), &v = grains_.motion[i];
     grains_.half[i] = {v.x - 0.5 * dt * now.x, v.y - 0.5 * dt * now.y, v.z - 0.5 * dt * now.z, 0};
@@ -47,22 +47,22 @@ void Dynamics::start(double dt, const Vec3& rate) {
 }
 
 void Dynamics::step(const Vec3& length, const Vec3& rate) {
-  const Box next(length, rate);
-  const double excess = advance({dt_, next.stretch_from(box_.length()), box_.rate(), material_.gamma_b},
+  const Cell next(length, rate);
+  const double excess = advance({dt_, next.stretch_from(cell_.length()), cell_.rate(), material_.gamma_b},
                                 neighbours_.reach(next), grains_);
   if (!std::isfinite(excess))
     throw Error("the motion of the grains became unstable " + to_text(time_) +
                 " us after its start; measure.time_step (or time_step_gas) must be smaller");
-  box_ = next;
-  if (neighbours_.outdated(box_, excess)) neighbours_.update(grains_, box_, planned_steps * dt_);
-  contact_forces(law_, neighbours_.pairs(), box_, grains_);
+  cell_ = next;
+  if (neighbours_.outdated(cell_, excess)) neighbours_.update(grains_, cell_, planned_steps * dt_);
+  contact_forces(law_, neighbours_.pairs(), cell_, grains_);
   time_ += dt_;
   ++steps_;
 }
 
 Quad Dynamics::acceleration(std::size_t i) const {
   return dem::acceleration(grains_.force[i], grains_.motion[i], grains_.acceleration[i], material_.gamma_b,
-                           box_.rate());
+                           cell_.rate());
 }
 
 std::vector<Quad> Dynamics::velocities() const {
@@ -78,12 +78,12 @@ std::vector<Quad> Dynamics::velocities() const {
 }
 
 Measurement Dynamics::measure() const {
-  return dem::measure(law_, grains_, velocities(), box_, neighbours_.pairs());
+  return dem::measure(law_, grains_, velocities(), cell_, neighbours_.pairs());
 }
 
 State Dynamics::state() const {
   State state;
-  state.box = box_.length();
+  state.box = cell_.length();
   state.time_us = time_;
   state.step = steps_;
   state.position.resize(count());
@@ -93,7 +93,7 @@ State Dynamics::state() const {
   for (std::size_t i = 0; i < count(); ++i) {
     const std::uint32_t original = grains_.id[i];
     const Quad &x = grains_.place[i], &v = velocity[i];
-    state.position[original] = box_.wrap({x.x, x.y, x.z});
+    state.position[original] = cell_.wrap({x.x, x.y, x.z});
     state.velocity[original] = {v.x, v.y, v.z};
     state.radius[original] = x.w;
   }

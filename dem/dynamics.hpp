@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/contact_law.hpp"
 #include "grainlaw/dem/grains.hpp"
 #include "grainlaw/dem/measure.hpp"
@@ -24,7 +24,7 @@ namespace grainlaw::dem {
 /// (x_i - x_j). The term m G v makes the work of the box equal that of the total stress, static plus kinetic.
 ///
 /// One step is velocity Verlet: x moves with the velocity of the half step, the box moves, and forces are
-/// computed for this (x, box). They depend on the velocity of the full step, which is not known yet; it is
+/// computed for this (x, cell). They depend on the velocity of the full step, which is not known yet; it is
 /// predicted with the extrapolated acceleration, v + dt/2 (a_n + (2 a_n - a_n-1)). The prediction errs by
 /// O(dt^3), so the scheme keeps its second order and, to leading order, its error constant (taking the
 /// half-step velocity would make it first order). All that is read between steps (positions, velocities,
@@ -40,9 +40,9 @@ class Dynamics {
   /// motion is no longer finite.
   void step(const Vec3& length, const Vec3& rate);
   /// One step in a box at rest.
-  void step() { step(box_.length(), {}); }
+  void step() { step(cell_.length(), {}); }
 
-  const Box& box() const { return box_; }
+  const Cell& cell() const { return cell_; }
   double dt() const { return dt_; }
   double time() const { return time_; }  ///< us
   std::uint64_t steps() const { return steps_; }
@@ -63,7 +63,7 @@ class Dynamics {
 
   Material material_;
   LinearContact law_;
-  Box box_;
+  Cell cell_;
   Grains grains_;
   Neighbours neighbours_;
   double dt_ = 0;

@@ -70,10 +70,10 @@ namespace grainlaw::dem {
 
 HWY_EXPORT(add_all_forces);
 
-void contact_forces(const LinearContact& law, const Pairs& pairs, const Box& box, Grains& grains) {
-  const std::array<Quad, 27> shifts = box.shifts();
+void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, Grains& grains) {
+  const std::array<Quad, 27> shifts = cell.shifts();
   std::fill(grains.force.begin(), grains.force.end(), Quad{});
-  HWY_DYNAMIC_DISPATCH(add_all_forces)(law, pairs, box.rate(), shifts.data(), grains);
+  HWY_DYNAMIC_DISPATCH(add_all_forces)(law, pairs, cell.rate(), shifts.data(), grains);
 }
 
 }  // namespace grainlaw::dem

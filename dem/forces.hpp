@@ -1,7 +1,7 @@
 // The force kernel: contact forces of all listed pairs. The one loop that the engine's speed depends on.
 #pragma once
 
-#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/contact_law.hpp"
 #include "grainlaw/dem/grains.hpp"
 #include "grainlaw/dem/pairs.hpp"
@@ -10,6 +10,6 @@ namespace grainlaw::dem {
 
 /// Fills grains.force from grains.place and grains.motion (Eq. 2.1). The closing velocity of a contact is
 /// that of the true motion: fluctuation plus the affine motion of the box over the branch.
-void contact_forces(const LinearContact& law, const Pairs& pairs, const Box& box, Grains& grains);
+void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, Grains& grains);
 
 }  // namespace grainlaw::dem

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/cell.hpp"
 
 namespace grainlaw::dem {
 

@@ -38,7 +38,7 @@ void count_contacts(const std::vector<std::uint32_t>& contacts_of, Measurement& 
 }  // namespace
 
 Measurement measure(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
-                    const Box& box, const Pairs& pairs) {
+                    const Cell& cell, const Pairs& pairs) {
   Measurement m;
   std::vector<std::uint32_t> contacts_of(grains.count(), 0);
   double solid = 0;
@@ -49,12 +49,12 @@ Measurement measure(const LinearContact& law, const Grains& grains, const std::v
     m.kinetic += 0.5 * mass * dot(v, v);
     add(m.kinetic_stress, mass, v);
   }
-  for_each_contact(pairs, grains, box, [&](const Contact& c) {
+  for_each_contact(pairs, grains, cell, [&](const Contact& c) {
     ++contacts_of[c.i];
     ++contacts_of[c.j];
     ++m.contacts;
     const Quad &a = velocity[c.i], &b = velocity[c.j];
-    const Vec3 flow = box.affine_velocity(c.branch);
+    const Vec3 flow = cell.affine_velocity(c.branch);
     const Vec3 relative{a.x - b.x + flow[0], a.y - b.y + flow[1], a.z - b.z + flow[2]};
     const double closing = -dot(c.branch, relative) / c.distance;
     add(m.stress, law.force(c.overlap, closing) / c.distance, c.branch);
@@ -62,7 +62,7 @@ Measurement measure(const LinearContact& law, const Grains& grains, const std::v
     add(m.fabric, volumes / (c.distance * c.distance), c.branch);
     m.elastic += law.energy(c.overlap);
   });
-  const double per_volume = 1 / box.volume();
+  const double per_volume = 1 / cell.volume();
   m.nu = solid * per_volume;
   scale(m.stress, per_volume);
   scale(m.kinetic_stress, per_volume);

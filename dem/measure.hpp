@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/contact_law.hpp"
 #include "grainlaw/dem/grains.hpp"
 #include "grainlaw/dem/pairs.hpp"
@@ -30,6 +30,6 @@ struct Measurement {
 
 /// `velocity` is the fluctuation velocity at the time of the positions, mm/us, in the order of the grains.
 Measurement measure(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
-                    const Box& box, const Pairs& pairs);
+                    const Cell& cell, const Pairs& pairs);
 
 }  // namespace grainlaw::dem

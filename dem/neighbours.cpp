@@ -29,26 +29,26 @@ double strayed(const Quad& x, const Quad& reference, const Vec3& stretch) {
 
 }  // namespace
 
-bool Neighbours::outdated(const Grains& grains, const Box& box) const {
+bool Neighbours::outdated(const Grains& grains, const Cell& cell) const {
   if (inner_reference_.size() != grains.count()) return true;
-  const Vec3 stretch = box.stretch_from(inner_length_);
+  const Vec3 stretch = cell.stretch_from(inner_length_);
   double excess = -1;
   for (std::size_t i = 0; i < grains.count(); ++i)
     excess = std::max(excess, strayed(grains.place[i], inner_reference_[i], stretch) - inner_reference_[i].w);
-  return outdated(box, excess);
+  return outdated(cell, excess);
 }
 
-bool Neighbours::outdated(const Box& box, double excess) const {
-  return excess > 0 || shrink(box.stretch_from(inner_length_)) < 1 - box_budget;
+bool Neighbours::outdated(const Cell& cell, double excess) const {
+  return excess > 0 || shrink(cell.stretch_from(inner_length_)) < 1 - box_budget;
 }
 
-void Neighbours::update(Grains& grains, const Box& box, double lookahead) {
+void Neighbours::update(Grains& grains, const Cell& cell, double lookahead) {
   make_budgets(grains, lookahead);
-  if (!outer_covers(grains, box)) {
-    sort_and_list(grains, box);
+  if (!outer_covers(grains, cell)) {
+    sort_and_list(grains, cell);
     make_budgets(grains, lookahead);  // in the new order, and within the new skin
   }
-  filter(grains, box);
+  filter(grains, cell);
   ++updates_;
 }
 
@@ -65,9 +65,9 @@ void Neighbours::make_budgets(const Grains& grains, double lookahead) {
 
 /// Whether every pair that the inner list must hold is in the outer one: for all i, with e the shrink since
 /// the outer list was made, |w_i| + s_i/e_min + r_i (1/e_min - e) <= e skin/2.
-bool Neighbours::outer_covers(const Grains& grains, const Box& box) const {
+bool Neighbours::outer_covers(const Grains& grains, const Cell& cell) const {
   if (outer_reference_.size() != grains.count()) return false;
-  const Vec3 stretch = box.stretch_from(outer_length_);
+  const Vec3 stretch = cell.stretch_from(outer_length_);
   const double e = shrink(stretch), inflate = 1 / (1 - box_budget);
   for (std::size_t i = 0; i < grains.count(); ++i) {
     const double room = 0.5 * e * outer_skin_ - budget_[i] * inflate - grains.place[i].w * (inflate - e);
@@ -76,8 +76,8 @@ bool Neighbours::outer_covers(const Grains& grains, const Box& box) const {
   return true;
 }
 
-void Neighbours::sort_and_list(Grains& grains, const Box& box) {
-  const double narrowest = box.shortest(), widest_grain = 2 * largest_radius_;
+void Neighbours::sort_and_list(Grains& grains, const Cell& cell) {
+  const double narrowest = cell.shortest(), widest_grain = 2 * largest_radius_;
   outer_skin_ = std::min(outer_skin * unit_, narrowest - widest_grain);
   if (!(outer_skin_ >= least_skin * unit_))
     throw Error("the box is " + to_text(narrowest) +
@@ -85,18 +85,18 @@ void Neighbours::sort_and_list(Grains& grains, const Box& box) {
                 " mm: it must be wider than " + to_text(widest_grain + least_skin * unit_) +
                 " mm, or a grain would touch its own image; take more grains or less strain");
   for (Quad& p : grains.place) {
-    const Vec3 x = box.wrap({p.x, p.y, p.z});
+    const Vec3 x = cell.wrap({p.x, p.y, p.z});
     p = {x[0], x[1], x[2], p.w};
   }
-  const Cells cells(grains.place, box, widest_grain + outer_skin_);
+  const LinkedCells cells(grains.place, cell, widest_grain + outer_skin_);
   grains.reorder(cells.order());
-  cells.list_pairs(grains.place, box, outer_skin_, outer_);
+  cells.list_pairs(grains.place, cell, outer_skin_, outer_);
   outer_reference_ = grains.place;
-  outer_length_ = box.length();
+  outer_length_ = cell.length();
   ++sorts_;
 }
 
-void Neighbours::filter(const Grains& grains, const Box& box) {
+void Neighbours::filter(const Grains& grains, const Cell& cell) {
   const std::size_t count = grains.count();
   inner_reference_.resize(count);
   const double inflate = 1 / (1 - box_budget);
@@ -105,12 +105,12 @@ void Neighbours::filter(const Grains& grains, const Box& box) {
     const Quad& p = grains.place[i];
     inner_reference_[i] = {p.x, p.y, p.z, (p.w + budget_[i]) * inflate};
   }
-  inner_length_ = box.length();
+  inner_length_ = cell.length();
   const auto near = [this](const Quad& a, const Quad& b, const Quad& shift) {
     const double x = a.x - b.x - shift.x, y = a.y - b.y - shift.y, z = a.z - b.z - shift.z, reach = a.w + b.w;
     return x * x + y * y + z * z < reach * reach;
   };
-  const std::array<Quad, 27> shifts = box.shifts();
+  const std::array<Quad, 27> shifts = cell.shifts();
   near_begin_.resize(count + 1);
   near_.resize(outer_.partner.size() + 1);
   std::uint32_t n = 0;

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "grainlaw/dem/advance.hpp"
-#include "grainlaw/dem/box.hpp"
-#include "grainlaw/dem/cells.hpp"
+#include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/grains.hpp"
+#include "grainlaw/dem/linked_cells.hpp"
 #include "grainlaw/dem/pairs.hpp"
 
 namespace grainlaw::dem {
@@ -26,15 +26,17 @@ class Neighbours {
   Neighbours(double unit, double largest_radius) : unit_(unit), largest_radius_(largest_radius) {}
 
   /// True when a pair missing in the list might touch.
-  bool outdated(const Grains& grains, const Box& box) const;
-  /// The same, where `excess` is what advance() returned for reach(box).
-  bool outdated(const Box& box, double excess) const;
-  ListReach reach(const Box& box) const { return {inner_reference_.data(), box.stretch_from(inner_length_)}; }
+  bool outdated(const Grains& grains, const Cell& cell) const;
+  /// The same, where `excess` is what advance() returned for reach(cell).
+  bool outdated(const Cell& cell, double excess) const;
+  ListReach reach(const Cell& cell) const {
+    return {inner_reference_.data(), cell.stretch_from(inner_length_)};
+  }
 
   /// Renews the list; wraps and sorts the grains where the outer list must be renewed too. A grain may go
   /// `lookahead` us at its speed before the next call. Throws Error if the box is too narrow for a grain not
   /// to touch its own image, or if two grains lie at the same point.
-  void update(Grains& grains, const Box& box, double lookahead);
+  void update(Grains& grains, const Cell& cell, double lookahead);
 
   const Pairs& pairs() const { return inner_; }
   std::size_t outer_pairs() const { return outer_.count(); }
@@ -43,9 +45,9 @@ class Neighbours {
 
  private:
   void make_budgets(const Grains& grains, double lookahead);
-  bool outer_covers(const Grains& grains, const Box& box) const;
-  void sort_and_list(Grains& grains, const Box& box);
-  void filter(const Grains& grains, const Box& box);
+  bool outer_covers(const Grains& grains, const Cell& cell) const;
+  void sort_and_list(Grains& grains, const Cell& cell);
+  void filter(const Grains& grains, const Cell& cell);
   void interleave(const Grains& grains);
 
   double unit_, largest_radius_;

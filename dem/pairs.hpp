@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/grains.hpp"
 
 namespace grainlaw::dem {
@@ -30,7 +30,7 @@ struct PairList {
     const std::size_t whole = (count + group - 1) / group * group;
     pairs.resize(whole, {0, 0});
     reach.resize(whole, -1.0);
-    if (!image.empty()) image.resize(whole, Box::home_image);
+    if (!image.empty()) image.resize(whole, Cell::home_image);
   }
 };
 
@@ -52,7 +52,7 @@ struct Contact {
 
 /// Calls f(Contact) for every pair with overlap >= 0.
 template <class F>
-void for_each_contact(const Pairs& pairs, const Grains& grains, const Box& box, F&& f) {
+void for_each_contact(const Pairs& pairs, const Grains& grains, const Cell& cell, F&& f) {
   const auto visit = [&](const PairList& list, std::size_t p, const Quad& shift) {
     const auto [i, j] = list.pairs[p];
     const Quad &a = grains.place[i], &b = grains.place[j];
@@ -60,8 +60,8 @@ void for_each_contact(const Pairs& pairs, const Grains& grains, const Box& box, 
     const double distance = norm(d);
     if (distance <= list.reach[p]) f(Contact{i, j, d, distance, list.reach[p] - distance});
   };
-  const std::array<Quad, 27> shifts = box.shifts();
-  for (std::size_t p = 0; p < pairs.within.count; ++p) visit(pairs.within, p, shifts[Box::home_image]);
+  const std::array<Quad, 27> shifts = cell.shifts();
+  for (std::size_t p = 0; p < pairs.within.count; ++p) visit(pairs.within, p, shifts[Cell::home_image]);
   for (std::size_t p = 0; p < pairs.crossing.count; ++p)
     visit(pairs.crossing, p, shifts[pairs.crossing.image[p]]);
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/forces.hpp"
 #include "grainlaw/dem/neighbours.hpp"
 #include "grainlaw/dem/random.hpp"
@@ -19,9 +19,9 @@ constexpr double swelling = 1.02;
 constexpr double push_share = 0.4;  // of each overlap, by which either grain gives way
 constexpr int most_pushes = 20000;
 
-bool any_overlap(const Grains& grains, const Box& box, const Pairs& pairs) {
+bool any_overlap(const Grains& grains, const Cell& cell, const Pairs& pairs) {
   bool found = false;
-  for_each_contact(pairs, grains, box, [&](const Contact& c) {
+  for_each_contact(pairs, grains, cell, [&](const Contact& c) {
     const double reach = (grains.place[c.i].w + grains.place[c.j].w) / swelling;
     found = found || c.distance <= reach;
   });
@@ -52,27 +52,27 @@ void draw_velocities(State& state, const Material& material, double speed, Rando
 void push_apart(State& state) {
   State swollen = state;
   for (double& r : swollen.radius) r *= swelling;
-  const Box box(state.box);
+  const Cell cell(state.box);
   Grains grains(swollen, 1);
   std::fill(grains.motion.begin(), grains.motion.end(), Quad{});
   Neighbours neighbours(grains.largest_radius(), grains.largest_radius());
-  neighbours.update(grains, box, 0);
+  neighbours.update(grains, cell, 0);
   const LinearContact push{1, 0};  // the force of a contact is its overlap
-  for (int step = 0; any_overlap(grains, box, neighbours.pairs()); ++step) {
+  for (int step = 0; any_overlap(grains, cell, neighbours.pairs()); ++step) {
     if (step == most_pushes)
       throw Error("the gas is too dense to place " + std::to_string(state.count()) +
                   " grains at random without overlap; nu_gas must be smaller");
-    contact_forces(push, neighbours.pairs(), box, grains);
+    contact_forces(push, neighbours.pairs(), cell, grains);
     for (std::size_t i = 0; i < grains.count(); ++i) {
       grains.place[i].x += push_share * grains.force[i].x;
       grains.place[i].y += push_share * grains.force[i].y;
       grains.place[i].z += push_share * grains.force[i].z;
     }
-    if (neighbours.outdated(grains, box)) neighbours.update(grains, box, 0);
+    if (neighbours.outdated(grains, cell)) neighbours.update(grains, cell, 0);
   }
   for (std::size_t i = 0; i < grains.count(); ++i) {
     const Quad& p = grains.place[i];
-    state.position[grains.id[i]] = box.wrap({p.x, p.y, p.z});
+    state.position[grains.id[i]] = cell.wrap({p.x, p.y, p.z});
   }
 }
 

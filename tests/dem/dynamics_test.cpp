@@ -83,7 +83,7 @@ TEST(Dynamics, WorkOfTheBoxIsThatOfTheTotalStress) {
     const auto power = [&](const Measurement& now) {
       double sum = 0;
       for (std::size_t c = 0; c < 3; ++c) sum -= rate[c] * (now.stress[c] + now.kinetic_stress[c]);
-      return sum * dynamics.box().volume();
+      return sum * dynamics.cell().volume();
     };
     Measurement now = dynamics.measure();
     const double energy = now.kinetic + now.elastic;
@@ -220,9 +220,9 @@ TEST(Dynamics, StateReturnsInTheOrderItCame) {
   EXPECT_EQ(back.radius, start.radius);
   EXPECT_EQ(back.velocity, start.velocity);
   for (std::size_t i = 0; i < start.count(); ++i)
-    EXPECT_LT(norm(Box(start.box).nearest_image({back.position[i][0] - start.position[i][0],
-                                                 back.position[i][1] - start.position[i][1],
-                                                 back.position[i][2] - start.position[i][2]})),
+    EXPECT_LT(norm(Cell(start.box).nearest_image({back.position[i][0] - start.position[i][0],
+                                                  back.position[i][1] - start.position[i][1],
+                                                  back.position[i][2] - start.position[i][2]})),
               1e-12);
 }
 

@@ -30,33 +30,33 @@ std::vector<std::int64_t> targets_here() {
 struct Heap {
   Material material;
   Grains grains;
-  Box box;
+  Cell cell;
   Neighbours neighbours;
 
   Heap() : Heap(test::squeezed(Material{}, 61, 4, 0.8, 0.3)) {}
   explicit Heap(const State& state)
       : grains(state, material.rho),
-        box(state.box, {1e-3, -2e-3, 5e-4}),
+        cell(state.box, {1e-3, -2e-3, 5e-4}),
         neighbours(1, grains.largest_radius()) {
-    neighbours.update(grains, box, 1);
+    neighbours.update(grains, cell, 1);
   }
 };
 
 TEST_P(EachTarget, ContactForcesAreEquation2_1) {
   Heap heap;
   const LinearContact law = LinearContact::of(heap.material);
-  contact_forces(law, heap.neighbours.pairs(), heap.box, heap.grains);
+  contact_forces(law, heap.neighbours.pairs(), heap.cell, heap.grains);
   std::vector<Vec3> expected(heap.grains.count(), Vec3{});
   int contacts = 0;
   const auto add_images = [&](std::uint32_t i, std::uint32_t j) {
     const Quad &a = heap.grains.place[i], &b = heap.grains.place[j];
-    for (const Quad& shift : heap.box.shifts()) {
+    for (const Quad& shift : heap.cell.shifts()) {
       const Vec3 l{a.x - b.x - shift.x, a.y - b.y - shift.y, a.z - b.z - shift.z};
       const double distance = norm(l), overlap = a.w + b.w - distance;
       if (overlap < 0) continue;
       ++contacts;
       const Quad &va = heap.grains.motion[i], &vb = heap.grains.motion[j];
-      const Vec3 flow = heap.box.affine_velocity(l);
+      const Vec3 flow = heap.cell.affine_velocity(l);
       const double closing =
           -dot(l, {va.x - vb.x + flow[0], va.y - vb.y + flow[1], va.z - vb.z + flow[2]}) / distance;
       const double f = heap.material.k * overlap + heap.material.gamma * closing;
@@ -79,12 +79,12 @@ TEST_P(EachTarget, ContactForcesAreEquation2_1) {
 
 TEST_P(EachTarget, AdvanceIsOneStepOfVerlet) {
   Heap heap;
-  contact_forces(LinearContact::of(heap.material), heap.neighbours.pairs(), heap.box, heap.grains);
+  contact_forces(LinearContact::of(heap.material), heap.neighbours.pairs(), heap.cell, heap.grains);
   const Grains before = heap.grains;
   const double dt = 1e-3, gamma_b = 100;
-  const Vec3 length{heap.box.length()[0] * 1.01, heap.box.length()[1] * 0.99, heap.box.length()[2]};
-  const Box next(length);
-  const Vec3 stretch = next.stretch_from(heap.box.length()), rate = heap.box.rate();
+  const Vec3 length{heap.cell.length()[0] * 1.01, heap.cell.length()[1] * 0.99, heap.cell.length()[2]};
+  const Cell next(length);
+  const Vec3 stretch = next.stretch_from(heap.cell.length()), rate = heap.cell.rate();
   const ListReach list = heap.neighbours.reach(next);
   const double excess = advance({dt, stretch, rate, gamma_b}, list, heap.grains);
   double expected_excess = -1;

@@ -56,7 +56,7 @@ TEST(Measure, AllStressComponentsAreDerivativesOfEnergy) {
     const auto energy = [&](double e) {
       double sum = 0;
       for_each_contact(
-          dynamics.neighbours().pairs(), dynamics.grains(), dynamics.box(), [&](const Contact& contact) {
+          dynamics.neighbours().pairs(), dynamics.grains(), dynamics.cell(), [&](const Contact& contact) {
             const auto a = static_cast<std::size_t>(axis_a[c]), b = static_cast<std::size_t>(axis_b[c]);
             Vec3 l = contact.branch;
             l[a] -= 0.5 * e * contact.branch[b];
@@ -68,7 +68,7 @@ TEST(Measure, AllStressComponentsAreDerivativesOfEnergy) {
     };
     const double slope = (energy(h) - energy(-h)) / (2 * h);
     const double scale = std::abs(trace(here.stress)) / 3;
-    EXPECT_NEAR(here.stress[c], slope / dynamics.box().volume(), 1e-6 * scale) << c;
+    EXPECT_NEAR(here.stress[c], slope / dynamics.cell().volume(), 1e-6 * scale) << c;
   }
 }
 

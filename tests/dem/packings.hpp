@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/dynamics.hpp"
 #include "grainlaw/dem/preparation.hpp"
 #include "grainlaw/dem/random.hpp"
@@ -55,7 +55,7 @@ inline ContactList brute_force(const State& state) {
 inline ContactList listed(const Dynamics& dynamics) {
   ContactList list;
   const Grains& grains = dynamics.grains();
-  for_each_contact(dynamics.neighbours().pairs(), grains, dynamics.box(), [&](const Contact& c) {
+  for_each_contact(dynamics.neighbours().pairs(), grains, dynamics.cell(), [&](const Contact& c) {
     const auto [low, high] = std::minmax(grains.id[c.i], grains.id[c.j]);
     list.emplace_back(low, high, c.overlap);
   });

@@ -1,4 +1,4 @@
-#include "grainlaw/dem/cells.hpp"
+#include "grainlaw/dem/linked_cells.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,33 +26,35 @@ struct Beside {
 
 }  // namespace
 
-Cells::Cells(const std::vector<Quad>& place, const Box& box, double range) {
+LinkedCells::LinkedCells(const std::vector<Quad>& place, const Cell& cell, double range) {
   // Not many more cells than grains: a dilute box would spend its time on empty ones.
-  const double widest = std::cbrt(box.volume() / static_cast<double>(std::max<std::size_t>(place.size(), 1)));
+  const double widest =
+      std::cbrt(cell.volume() / static_cast<double>(std::max<std::size_t>(place.size(), 1)));
   for (std::size_t c = 0; c < 3; ++c)
-    count_[c] = std::max(1, static_cast<int>(box.length()[c] / std::max(range, widest)));
+    count_[c] = std::max(1, static_cast<int>(cell.length()[c] / std::max(range, widest)));
   const auto along = [&](double x, std::size_t c) {
-    return std::clamp(static_cast<int>(x / box.length()[c] * count_[c]), 0, count_[c] - 1);
+    return std::clamp(static_cast<int>(x / cell.length()[c] * count_[c]), 0, count_[c] - 1);
   };
-  std::vector<std::uint32_t> cell(place.size());
+  std::vector<std::uint32_t> home(place.size());
   begin_.assign(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
                         static_cast<std::size_t>(count_[2]) +
                     1,
                 0);
   for (std::size_t i = 0; i < place.size(); ++i) {
-    cell[i] = static_cast<std::uint32_t>(
+    home[i] = static_cast<std::uint32_t>(
         (along(place[i].x, 0) * count_[1] + along(place[i].y, 1)) * count_[2] + along(place[i].z, 2));
-    ++begin_[cell[i] + 1];
+    ++begin_[home[i] + 1];
   }
   for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
   std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
   order_.resize(place.size());
-  for (std::uint32_t i = 0; i < place.size(); ++i) order_[next[cell[i]]++] = i;
+  for (std::uint32_t i = 0; i < place.size(); ++i) order_[next[home[i]]++] = i;
 }
 
-void Cells::list_pairs(const std::vector<Quad>& place, const Box& box, double skin, NearPairs& pairs) const {
+void LinkedCells::list_pairs(const std::vector<Quad>& place, const Cell& cell, double skin,
+                             NearPairs& pairs) const {
   static const std::vector<std::array<int, 3>> forward = forward_neighbours();
-  const std::array<Quad, 27> shifts = box.shifts();
+  const std::array<Quad, 27> shifts = cell.shifts();
   pairs.begin.assign(1, 0);
   pairs.partner.clear();
   pairs.crossing.clear();
@@ -65,7 +67,7 @@ void Cells::list_pairs(const std::vector<Quad>& place, const Box& box, double sk
     if (squared == 0)
       throw Error("two grains lie at the same point (" + to_text(a.x) + ", " + to_text(a.y) + ", " +
                   to_text(a.z) + ") mm: the direction of their contact is undefined");
-    if (image == Box::home_image)
+    if (image == Cell::home_image)
       pairs.partner.push_back(j);
     else
       pairs.crossing.push_back({i, j, image});
@@ -85,11 +87,11 @@ void Cells::list_pairs(const std::vector<Quad>& place, const Box& box, double sk
           }
           const auto k = static_cast<std::size_t>((other[0] * count_[1] + other[1]) * count_[2] + other[2]);
           if (begin_[k] < begin_[k + 1])
-            beside.push_back({begin_[k], begin_[k + 1], Box::image_number(image[0], image[1], image[2])});
+            beside.push_back({begin_[k], begin_[k + 1], Cell::image_number(image[0], image[1], image[2])});
         }
         const auto k = static_cast<std::size_t>((at[0] * count_[1] + at[1]) * count_[2] + at[2]);
         for (std::uint32_t i = begin_[k]; i < begin_[k + 1]; ++i) {
-          for (std::uint32_t j = i + 1; j < begin_[k + 1]; ++j) consider(i, j, Box::home_image);
+          for (std::uint32_t j = i + 1; j < begin_[k + 1]; ++j) consider(i, j, Cell::home_image);
           for (const Beside& b : beside)
             for (std::uint32_t j = b.first; j < b.last; ++j) consider(i, j, b.image);
           pairs.begin.push_back(static_cast<std::uint32_t>(pairs.partner.size()));

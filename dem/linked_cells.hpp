@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "grainlaw/dem/box.hpp"
+#include "grainlaw/dem/cell.hpp"
 
 namespace grainlaw::dem {
 
@@ -21,19 +21,19 @@ struct NearPairs {
   std::size_t count() const { return partner.size() + crossing.size(); }
 };
 
-class Cells {
+class LinkedCells {
  public:
   /// `place` must lie within the box, which must be at least `range` wide: cells are at least as wide as
   /// that, and a grid may be one or two cells wide, because each of the 27 neighbours of a cell is looked up
   /// together with the image it belongs to.
-  Cells(const std::vector<Quad>& place, const Box& box, double range);
+  LinkedCells(const std::vector<Quad>& place, const Cell& cell, double range);
 
   /// Grains cell by cell (z fastest), in each cell as they came.
   const std::vector<std::uint32_t>& order() const { return order_; }
 
   /// All pairs closer than r_i + r_j + skin <= range, each once; `place` in the order of order().
   /// Throws Error if two grains lie at the same point.
-  void list_pairs(const std::vector<Quad>& place, const Box& box, double skin, NearPairs& pairs) const;
+  void list_pairs(const std::vector<Quad>& place, const Cell& cell, double skin, NearPairs& pairs) const;
 
  private:
   std::array<int, 3> count_;

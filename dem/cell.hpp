@@ -15,11 +15,11 @@ namespace grainlaw::dem {
 /// Volume of a sphere, mm^3.
 inline double sphere_volume(double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; }
 
-class Box {
+class Cell {
  public:
-  Box() = default;
+  Cell() = default;
   /// Edges, mm; d(ln L)/dt per axis, 1/us, positive in extension.
-  explicit Box(const Vec3& length, const Vec3& rate = {}) : length_(length), rate_(rate) {}
+  explicit Cell(const Vec3& length, const Vec3& rate = {}) : length_(length), rate_(rate) {}
 
   const Vec3& length() const { return length_; }  ///< mm
   /// d(ln L)/dt per axis, 1/us, positive in extension: the velocity gradient.
