@@ -29,29 +29,48 @@ StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_ste
   return plan;
 }
 
-void follow(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, const AfterStep& after_step) {
-  const Drive drive(dynamics.cell().length(), leg);
-  dynamics.start(plan.dt, drive.rate(0, plan.dt));
-  for (std::uint64_t n = 1; n <= plan.steps; ++n) {
+void follow(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
+            const AfterStep& after_step) {
+  if (state.step == 0) state.start_length = dynamics.cell().length();
+  const Drive box(state.start_length, leg);
+  if (state.step == 0) dynamics.start(plan.dt, box.rate(0, plan.dt));
+  while (state.step < plan.steps) {
+    const std::uint64_t n = ++state.step;
     const double t = n == plan.steps ? leg.duration : static_cast<double>(n) * plan.dt;
-    dynamics.step(drive.length(t), drive.rate(t, plan.dt));
+    dynamics.step(box.length(t), box.rate(t, plan.dt));
     if (!after_step(n)) return;
   }
 }
 
-void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, const AfterStep& after_step) {
-  dynamics.start(plan.dt, {});
-  const double kinetic_at_start = dynamics.measure().kinetic;
+void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
+           const AfterStep& after_step) {
+  if (state.step == 0) {
+    dynamics.start(plan.dt, {});
+    state.kinetic_at_start = dynamics.measure().kinetic;
+  }
   const auto at_rest = [&] {
+    if (state.step == 0 || state.step % relax_check_interval != 0) return false;
     const Measurement m = dynamics.measure();
     return m.f_NR > 0 ? m.kinetic <= leg.tolerance * m.elastic
-                      : m.kinetic <= leg.tolerance * kinetic_at_start;
+                      : m.kinetic <= leg.tolerance * state.kinetic_at_start;
   };
-  for (std::uint64_t n = 1; n <= plan.steps; ++n) {
+  while (state.step < plan.steps && !at_rest()) {
     dynamics.step();
-    if (!after_step(n)) return;
-    if (n % relax_check_interval == 0 && at_rest()) return;
+    if (!after_step(++state.step)) return;
   }
+}
+
+void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
+           const AfterStep& after_step) {
+  if (leg.mode == Mode::relax)
+    relax(dynamics, leg, plan, state, after_step);
+  else
+    follow(dynamics, leg, plan, state, after_step);
+}
+
+void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan) {
+  LegState state;
+  drive(dynamics, leg, plan, state, [](std::uint64_t) { return true; });
 }
 
 }  // namespace grainlaw::dem

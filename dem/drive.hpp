@@ -31,15 +31,30 @@ struct StepPlan {
 /// At least `least_steps` (and one) of equal length, each no longer than `longest_step` us.
 StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_steps);
 
-/// Called after each step with its number, counted from 1; false ends the leg there.
+/// How far a leg has been followed, and all that its next step needs to know beyond the grains and their box.
+/// Whatever drives a leg keeps its state here, so that the leg can be left after any step and gone on with.
+struct LegState {
+  std::uint64_t step = 0;       ///< steps taken; 0: the leg has not begun
+  Vec3 start_length{};          ///< edges of the box where it began, mm
+  double kinetic_at_start = 0;  ///< for relax, ug mm^2/us^2
+};
+
+/// Called after each step with its number, counted from 1; false leaves the leg there.
 using AfterStep = std::function<bool(std::uint64_t step)>;
 
-/// Follows a leg that strains the box.
-void follow(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, const AfterStep& after_step);
+/// Follows a leg that strains the box, from where `state` says it is.
+void follow(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
+            const AfterStep& after_step);
 
 /// Lets the grains come to rest in a box at rest, until E_k/E_p falls below leg.tolerance or the plan ends.
 /// Where no grain has four contacts, there is no network to compare with: there, until E_k has fallen by that
 /// factor.
-void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, const AfterStep& after_step);
+void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
+           const AfterStep& after_step);
+
+/// A whole leg, however it is followed.
+void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
+           const AfterStep& after_step);
+void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan);
 
 }  // namespace grainlaw::dem

@@ -1,26 +1,15 @@
 // Runs one element test: prepares or loads a packing, takes it along its path and writes the record.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/watch.hpp"
 
 namespace grainlaw::dem {
-
-struct RunHooks {
-  /// Called some times a second with the share of all planned steps that is done, in [0, 1], and what is
-  /// going on
-  /// ("compress the gas", "d2 (2 of 3)"). Relaxations may end early, so the share can jump ahead; it never
-  /// falls.
-  std::function<void(double fraction_done, const std::string& stage)> progress;
-  /// When it turns true the test stops within some 10 ms.
-  const std::atomic<bool>* stop = nullptr;
-};
 
 struct RunSummary {
   double wall_s = 0;

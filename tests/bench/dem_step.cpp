@@ -28,10 +28,9 @@ dem::State jammed(const Material& material, std::int64_t count) {
   packing.relax.duration = 100;
   dem::Dynamics dynamics(material, dem::random_gas(material, packing));
   const double dt = dem::time_step(material, dynamics.grains().smallest_radius(), 0.1);
-  const auto on = [](std::uint64_t) { return true; };
   const Leg compression = dem::compression_leg(packing), rest = dem::relaxation_leg(packing.relax);
-  dem::follow(dynamics, compression, dem::plan_steps(compression, dt, 1), on);
-  dem::relax(dynamics, rest, dem::plan_steps(rest, dt, 1), on);
+  dem::drive(dynamics, compression, dem::plan_steps(compression, dt, 1));
+  dem::drive(dynamics, rest, dem::plan_steps(rest, dt, 1));
   return dynamics.state();
 }
 
@@ -54,7 +53,7 @@ int main(int count_of_arguments, char** arguments) {
   for (int k = 0; k < repeats + 1; ++k) {
     const auto updates = dynamics.neighbours().updates(), sorts = dynamics.neighbours().sorts();
     const double begin = processor_seconds();
-    dem::follow(dynamics, flow, dem::plan_steps(flow, dt * 1.000001, 1), [](std::uint64_t) { return true; });
+    dem::drive(dynamics, flow, dem::plan_steps(flow, dt * 1.000001, 1));
     const double wall = processor_seconds() - begin;
     if (k == 0) continue;  // warm up
     speeds.push_back(static_cast<double>(steps) * static_cast<double>(count) / wall / 1e6);

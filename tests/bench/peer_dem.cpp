@@ -54,7 +54,7 @@ void flow(const dem::State& state, const Material& material, std::uint64_t steps
   std::printf("dt %.17g\n", plan.dt);
   print("before", dynamics.measure());
   const auto begin = std::chrono::steady_clock::now();
-  dem::follow(dynamics, d2, plan, [](std::uint64_t) { return true; });
+  dem::drive(dynamics, d2, plan);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   print("after", dynamics.measure());
   std::printf("speed %.6g\n", static_cast<double>(steps * state.count()) / wall.count() / 1e6);

@@ -1,0 +1,109 @@
+#include "grainlaw/dem/stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grainlaw/dem/preparation.hpp"
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::dem {
+
+namespace {
+
+constexpr std::uint64_t least_steps_per_row = 2;
+
+/// The share of a leg's strain at which a wanted snapshot lies.
+double wanted_progress(const SnapshotRequest& wanted, const Leg& leg, double nu_start) {
+  const auto share = [](double x, const double(&ends)[2]) {
+    return std::clamp((x - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0);
+  };
+  if (wanted.nu) return share(std::log(*wanted.nu / nu_start), leg.eps_vol);
+  if (wanted.eps_dev) return share(*wanted.eps_dev, leg.eps_dev);
+  return 1;
+}
+
+std::vector<std::uint64_t> row_steps(const Leg& leg, std::uint64_t rows, std::uint64_t steps) {
+  std::vector<std::uint64_t> list;
+  for (std::uint64_t k = 1; k <= rows; ++k) {
+    const double share = leg.time_at(static_cast<double>(k) / static_cast<double>(rows)) / leg.duration;
+    const auto step =
+        k == rows ? steps : static_cast<std::uint64_t>(std::lround(share * static_cast<double>(steps)));
+    if (step > 0 && (list.empty() || step > list.back())) list.push_back(step);
+  }
+  return list;
+}
+
+std::vector<std::uint64_t> snapshot_steps(const Leg& leg, std::size_t segment, const Measure& measure,
+                                          double nu_start, std::uint64_t steps) {
+  std::vector<std::uint64_t> list;
+  for (const SnapshotRequest& wanted : measure.snapshots) {
+    if (wanted.segment != segment) continue;
+    const double share =
+        leg.mode == Mode::relax ? 1 : leg.time_at(wanted_progress(wanted, leg, nu_start)) / leg.duration;
+    const double step = std::ceil(share * static_cast<double>(steps) * (1 - 1e-12));
+    list.push_back(std::min(steps, static_cast<std::uint64_t>(step)));
+  }
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
+Stage stage_of_path(const std::vector<Leg>& legs, std::size_t index, const Measure& measure, double nu_start,
+                    double longest_step) {
+  Stage stage;
+  stage.leg = legs[index];
+  stage.segment = index;
+  stage.name =
+      name_of(stage.leg.mode) + " (" + std::to_string(index + 1) + " of " + std::to_string(legs.size()) + ")";
+  const bool at_rest = stage.leg.mode == Mode::relax;
+  const auto rows = at_rest ? std::uint64_t{1} : static_cast<std::uint64_t>(measure.rows);
+  stage.stepping = plan_steps(stage.leg, longest_step, at_rest ? 1 : least_steps_per_row * rows);
+  stage.rows = row_steps(stage.leg, rows, stage.stepping.steps);
+  stage.snapshots = snapshot_steps(stage.leg, index, measure, nu_start, stage.stepping.steps);
+  return stage;
+}
+
+Stage stage_of_preparation(const std::string& name, const Leg& leg, double longest_step) {
+  return {name, leg, {}, plan_steps(leg, longest_step, 1), {}, {}};
+}
+
+}  // namespace
+
+double Stage::progress(std::uint64_t step) const {
+  return step >= stepping.steps ? 1.0 : leg.progress(static_cast<double>(step) * stepping.dt);
+}
+
+LongestSteps::LongestSteps(const Scene& scene, double smallest_radius)
+    : path(time_step(scene.material, smallest_radius, scene.measure.time_step)),
+      preparation(time_step(scene.material, smallest_radius, scene.measure.time_step_gas)) {}
+
+std::vector<Stage> plan_stages(const Scene& scene, double nu_start, const LongestSteps& longest) {
+  std::vector<Stage> stages;
+  if (const auto* packing = std::get_if<NewPacking>(&scene.preparation)) {
+    stages.push_back(
+        stage_of_preparation("compress the gas", compression_leg(*packing), longest.preparation));
+    stages.push_back(
+        stage_of_preparation("relax the packing", relaxation_leg(packing->relax), longest.preparation));
+  }
+  const std::vector<Leg> legs = scene.legs(nu_start);
+  for (std::size_t i = 0; i < legs.size(); ++i)
+    stages.push_back(stage_of_path(legs, i, scene.measure, nu_start, longest.path));
+  return stages;
+}
+
+void check_width(const std::vector<Stage>& stages, const State& start, const Scene& scene) {
+  const double widest = 2 * *std::max_element(start.radius.begin(), start.radius.end()),
+               least = widest + 0.02 * scene.material.r_mean;
+  Vec3 length = start.box;
+  for (const Stage& stage : stages)
+    for (std::size_t c = 0; c < 3; ++c) {
+      length[c] *= std::exp(-stage.leg.strain[c]);
+      if (stage.segment && length[c] < least)
+        throw Error(scene.file, "path.segments[" + std::to_string(*stage.segment) + "]",
+                    "makes the box " + to_text(length[c]) + " mm wide, too narrow for a grain of diameter " +
+                        to_text(widest) + " mm (it would touch its own image); must stay >= " +
+                        to_text(least) + " mm: take more grains or less strain");
+    }
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,41 @@
+// The stages of an element test, one leg each: preparation, then the path. What happens at which step.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grainlaw/dem/drive.hpp"
+#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/state.hpp"
+#include "grainlaw/element/path.hpp"
+
+namespace grainlaw::dem {
+
+struct Stage {
+  std::string name;  ///< "compress the gas", "d2 (2 of 3)"
+  Leg leg;
+  std::optional<std::size_t> segment;  ///< index in the path; none during preparation
+  StepPlan stepping;
+  std::vector<std::uint64_t> rows;       ///< steps after which to measure, rising
+  std::vector<std::uint64_t> snapshots;  ///< steps after which to take one, rising
+
+  /// Share of the leg's strain after so many steps.
+  double progress(std::uint64_t step) const;
+};
+
+/// The longest steps that a scene allows for grains of this smallest radius, us.
+struct LongestSteps {
+  double path, preparation;
+  LongestSteps(const Scene& scene, double smallest_radius);
+};
+
+/// All stages of a test whose path starts at `nu_start`.
+std::vector<Stage> plan_stages(const Scene& scene, double nu_start, const LongestSteps& longest);
+
+/// Throws Error if the box becomes narrower along the path than its largest grain allows. `start` is the
+/// state the first stage starts from.
+void check_width(const std::vector<Stage>& stages, const State& start, const Scene& scene);
+
+}  // namespace grainlaw::dem
