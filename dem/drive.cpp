@@ -46,10 +46,12 @@ void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& s
            const AfterStep& after_step) {
   if (state.step == 0) {
     dynamics.start(plan.dt, {});
-    state.kinetic_at_start = dynamics.measure().kinetic;
+    state.kinetic_at_start = dynamics.energies().kinetic;
   }
   const auto at_rest = [&] {
     if (state.step == 0 || state.step % relax_check_interval != 0) return false;
+    const Energies e = dynamics.energies();
+    if (e.kinetic > leg.tolerance * std::max(e.elastic, state.kinetic_at_start)) return false;
     const Measurement m = dynamics.measure();
     return m.f_NR > 0 ? m.kinetic <= leg.tolerance * m.elastic
                       : m.kinetic <= leg.tolerance * state.kinetic_at_start;

@@ -81,6 +81,14 @@ Measurement Dynamics::measure() const {
   return dem::measure(law_, grains_, velocities(), cell_, neighbours_.pairs());
 }
 
+Sym6 Dynamics::static_stress() const {
+  return dem::static_stress(law_, grains_, grains_.motion, cell_, neighbours_.pairs());
+}
+
+Energies Dynamics::energies() const {
+  return dem::energies(law_, grains_, velocities(), cell_, neighbours_.pairs());
+}
+
 State Dynamics::state() const {
   State state;
   state.box = cell_.length();

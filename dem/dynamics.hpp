@@ -54,6 +54,11 @@ class Dynamics {
   /// Fluctuation velocities of the full step, mm/us, in the order of grains().
   std::vector<Quad> velocities() const;
   Measurement measure() const;
+  /// measure().stress but for the velocity, which is the one that the forces of this step saw (it is
+  /// predicted, O(dt^3) off): cheap enough for a servo.
+  Sym6 static_stress() const;
+  /// measure().kinetic and elastic, to the last bit.
+  Energies energies() const;
   /// In the order of the State it began with; positions wrapped into the box.
   State state() const;
 

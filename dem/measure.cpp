@@ -20,6 +20,11 @@ void scale(Sym6& q, double factor) {
   for (double& component : q) component *= factor;
 }
 
+double kinetic_energy(const Grains& grains, const std::vector<Quad>& velocity, std::size_t i) {
+  const Vec3 v{velocity[i].x, velocity[i].y, velocity[i].z};
+  return 0.5 / grains.acceleration[i].w * dot(v, v);
+}
+
 void count_contacts(const std::vector<std::uint32_t>& contacts_of, Measurement& m) {
   const double grains = static_cast<double>(contacts_of.size());
   std::uint64_t bearing = 0, held = 0;  // N4, M4
@@ -37,27 +42,46 @@ void count_contacts(const std::vector<std::uint32_t>& contacts_of, Measurement& 
 
 }  // namespace
 
+double closing_speed(const Contact& c, const std::vector<Quad>& velocity, const Cell& cell) {
+  const Quad &a = velocity[c.i], &b = velocity[c.j];
+  const Vec3 flow = cell.affine_velocity(c.branch);
+  const Vec3 relative{a.x - b.x + flow[0], a.y - b.y + flow[1], a.z - b.z + flow[2]};
+  return -dot(c.branch, relative) / c.distance;
+}
+
+Sym6 static_stress(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
+                   const Cell& cell, const Pairs& pairs) {
+  Sym6 stress{};
+  for_each_contact(pairs, grains, cell, [&](const Contact& c) {
+    add(stress, law.force(c.overlap, closing_speed(c, velocity, cell)) / c.distance, c.branch);
+  });
+  scale(stress, 1 / cell.volume());
+  return stress;
+}
+
+Energies energies(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
+                  const Cell& cell, const Pairs& pairs) {
+  Energies e;
+  for (std::size_t i = 0; i < grains.count(); ++i) e.kinetic += kinetic_energy(grains, velocity, i);
+  for_each_contact(pairs, grains, cell, [&](const Contact& c) { e.elastic += law.energy(c.overlap); });
+  return e;
+}
+
 Measurement measure(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
                     const Cell& cell, const Pairs& pairs) {
   Measurement m;
   std::vector<std::uint32_t> contacts_of(grains.count(), 0);
   double solid = 0;
   for (std::size_t i = 0; i < grains.count(); ++i) {
-    const double mass = 1 / grains.acceleration[i].w;
-    const Vec3 v{velocity[i].x, velocity[i].y, velocity[i].z};
     solid += sphere_volume(grains.place[i].w);
-    m.kinetic += 0.5 * mass * dot(v, v);
-    add(m.kinetic_stress, mass, v);
+    m.kinetic += kinetic_energy(grains, velocity, i);
+    add(m.kinetic_stress, 1 / grains.acceleration[i].w, {velocity[i].x, velocity[i].y, velocity[i].z});
   }
   for_each_contact(pairs, grains, cell, [&](const Contact& c) {
     ++contacts_of[c.i];
     ++contacts_of[c.j];
     ++m.contacts;
-    const Quad &a = velocity[c.i], &b = velocity[c.j];
-    const Vec3 flow = cell.affine_velocity(c.branch);
-    const Vec3 relative{a.x - b.x + flow[0], a.y - b.y + flow[1], a.z - b.z + flow[2]};
-    const double closing = -dot(c.branch, relative) / c.distance;
-    add(m.stress, law.force(c.overlap, closing) / c.distance, c.branch);
+    add(m.stress, law.force(c.overlap, closing_speed(c, velocity, cell)) / c.distance, c.branch);
     const double volumes = sphere_volume(grains.place[c.i].w) + sphere_volume(grains.place[c.j].w);
     add(m.fabric, volumes / (c.distance * c.distance), c.branch);
     m.elastic += law.energy(c.overlap);

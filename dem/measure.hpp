@@ -28,7 +28,23 @@ struct Measurement {
   std::uint64_t contacts = 0;
 };
 
-/// `velocity` is the fluctuation velocity at the time of the positions, mm/us, in the order of the grains.
+struct Energies {
+  double kinetic = 0;  ///< of the fluctuation velocity, ug mm^2/us^2
+  double elastic = 0;  ///< of the contacts, ug mm^2/us^2
+};
+
+/// d(delta)/dt of a contact, that of the true motion: the box's is in it, mm/us.
+double closing_speed(const Contact& contact, const std::vector<Quad>& velocity, const Cell& cell);
+
+/// Measurement::stress alone, for a servo.
+Sym6 static_stress(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
+                   const Cell& cell, const Pairs& pairs);
+/// Measurement::kinetic and elastic alone, for a relaxation.
+Energies energies(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
+                  const Cell& cell, const Pairs& pairs);
+
+/// Everything at once. `velocity` is the fluctuation velocity at the time of the positions, mm/us, in the
+/// order of the grains.
 Measurement measure(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
                     const Cell& cell, const Pairs& pairs);
 

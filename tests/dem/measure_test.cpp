@@ -95,6 +95,29 @@ TEST(Measure, OneContactByHand) {
   EXPECT_TRUE(std::isnan(one.C_star));
 }
 
+TEST(Measure, TheCheapOnesAgreeWithTheWhole) {
+  const Material m;
+  Dynamics dynamics(m, test::squeezed(m, 150, 24, 0.75));
+  dynamics.start(1e-3, {1e-3, -1e-3, 0});
+  dynamics.step(dynamics.cell().length(), {1e-3, -1e-3, 0});
+  const Measurement whole = dynamics.measure();
+  EXPECT_EQ(dynamics.energies().kinetic, whole.kinetic);
+  EXPECT_EQ(dynamics.energies().elastic, whole.elastic);
+  EXPECT_EQ(static_stress(dynamics.law(), dynamics.grains(), dynamics.velocities(), dynamics.cell(),
+                          dynamics.neighbours().pairs()),
+            whole.stress);
+  // This one takes the velocity that the forces saw.
+  const Sym6 seen = dynamics.static_stress();
+  Sym6 forces{};
+  const auto& grains = dynamics.grains();
+  for_each_contact(dynamics.neighbours().pairs(), grains, dynamics.cell(), [&](const Contact& c) {
+    const double f = dynamics.law().force(c.overlap, closing_speed(c, grains.motion, dynamics.cell()));
+    forces[0] += f / c.distance * c.branch[0] * c.branch[0];
+  });
+  EXPECT_NEAR(seen[0], forces[0] / dynamics.cell().volume(), 1e-12 * seen[0]);
+  EXPECT_NEAR(seen[0] / whole.stress[0], 1, 1e-5);
+}
+
 TEST(Measure, RattlersAreLeftOutOfCAndKeptInFabric) {
   // A face-centred cubic crystal (12 contacts each) and one grain more in a hole, touching three of its walls
   // only.
