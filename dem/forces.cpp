@@ -17,49 +17,120 @@ HWY_BEFORE_NAMESPACE();
 
 namespace grainlaw::dem::HWY_NAMESPACE {
 
-static_assert(PairList::group == 4);
+static_assert(GroupedPairs::width % lanes == 0 && CrossingPairs::width % lanes == 0);
+constexpr std::size_t second = lanes - 4;  // from a grain to the one in the other half of its vector
 
-/// Four pairs at a time: places and velocities are loaded grain by grain and transposed, forces are added
-/// grain by grain.
-template <bool crossing>
-void add_forces(const LinearContact law, const PairList& list, const Vec3& rate, const Quad* shifts,
-                Grains& grains) {
+/// What the loops need beside the grains.
+struct Constants {
+  LinearContact law;
+  Wide gx, gy, gz;
+  Wide apart = wide_quad({1, 1, 1, -1});  // turns a difference of places into branch | r_i + r_j
+};
+
+/// Force over distance of as many pairs as there are lanes; zero where grains do not touch. Of a grain with
+/// itself, which fills up a list, it is finite and the branch zero.
+HWY_INLINE Wide strength_of(const Constants& c, const Wide (&branch)[4], const Wide (&velocity)[4]) {
+  Wide x, y, z, reach, u, v, w, unused;
+  transpose(branch, x, y, z, reach);
+  transpose(velocity, u, v, w, unused);
+  // Root and quotient do not wait for each other.
+  const Wide squared = larger(wide(1e-60), mul_add(x, x, mul_add(y, y, z * z)));
+  const Wide distance = root(squared), inverse = distance * (wide(1) / squared), overlap = reach - distance;
+  const Wide parting =
+      mul_add(x, mul_add(c.gx, x, u), mul_add(y, mul_add(c.gy, y, v), z * mul_add(c.gz, z, w)));
+  alignas(64) double overlaps[lanes], closing[lanes], forces[lanes];
+  store(overlap, overlaps);
+  store(wide(0) - parting * inverse, closing);
+  for (std::size_t k = 0; k < lanes; ++k) forces[k] = c.law.force(overlaps[k], closing[k]);
+  return where_not_negative(overlap, load_wide(forces) * inverse);
+}
+
+HWY_INLINE void add(Four part, Quad& to) { store(load(to) + part, to); }
+HWY_INLINE void subtract(Four part, Quad& from) { store(load(from) - part, from); }
+
+template <int k>
+HWY_INLINE void act(Wide strength, const Wide (&branch)[4], Wide (&total)[4], const std::uint32_t* partner,
+                    Quad* force) {
+  const Wide f = spread_row<k>(strength) * branch[k];
+  total[k] = total[k] + f;
+  subtract(lower(f), force[partner[k]]);
+  if constexpr (lanes == 8) subtract(upper(f), force[partner[k + second]]);
+}
+
+/// Each group of grains stays in registers, places, velocities and forces, while it meets its partners.
+void add_forces_within(const Constants& constants, const GroupedPairs& list, Grains& grains) {
   const Quad* const place = grains.place.data();
   const Quad* const motion = grains.motion.data();
   Quad* const force = grains.force.data();
-  const Four gx = all(rate[0]), gy = all(rate[1]), gz = all(rate[2]), zero = all(0), one = all(1);
-  for (std::size_t p = 0; p < list.pairs.size(); p += PairList::group) {
-    const PairList::Pair* const pair = &list.pairs[p];
-    Four branch[4], velocity[4];
-    for (std::size_t k = 0; k < 4; ++k) {
-      branch[k] = load(place[pair[k].i]) - load(place[pair[k].j]);
-      if constexpr (crossing) branch[k] = branch[k] - load(shifts[list.image[p + k]]);
-      velocity[k] = load(motion[pair[k].i]) - load(motion[pair[k].j]);
+  for (const GroupedPairs::Group& group : list.groups)
+    for (std::size_t half = 0; half < GroupedPairs::width; half += lanes) {
+      const std::uint32_t* const grain = &group.grain[half];
+      Wide place_i[4], motion_i[4], total[4];
+      for (std::size_t k = 0; k < 4; ++k) {
+        place_i[k] = rows(place[grain[k]], place[grain[k + second]]);
+        motion_i[k] = rows(motion[grain[k]], motion[grain[k + second]]);
+        total[k] = wide(0);
+      }
+      const std::uint32_t* const end = list.partner.data() + group.last;
+      for (const std::uint32_t* j = list.partner.data() + group.first + half; j < end;
+           j += GroupedPairs::width) {
+        Wide branch[4], velocity[4];
+        for (std::size_t k = 0; k < 4; ++k) {
+          branch[k] = mul_sub_from(constants.apart, rows(place[j[k]], place[j[k + second]]), place_i[k]);
+          velocity[k] = motion_i[k] - rows(motion[j[k]], motion[j[k + second]]);
+        }
+        const Wide strength = strength_of(constants, branch, velocity);
+        act<0>(strength, branch, total, j, force);
+        act<1>(strength, branch, total, j, force);
+        act<2>(strength, branch, total, j, force);
+        act<3>(strength, branch, total, j, force);
+      }
+      for (std::size_t k = 0; k < 4; ++k) {
+        add(lower(total[k]), force[grain[k]]);
+        if constexpr (lanes == 8) add(upper(total[k]), force[grain[k + second]]);
+      }
     }
-    Four x, y, z, u, v, w;
-    transpose(branch, x, y, z);
-    transpose(velocity, u, v, w);
-    const Four distance = root(mul_add(x, x, mul_add(y, y, z * z))), inverse = one / distance;
-    const Four parting = mul_add(x, mul_add(gx, x, u), mul_add(y, mul_add(gy, y, v), z * mul_add(gz, z, w)));
-    const Four overlap = load(&list.reach[p]) - distance;
-    alignas(32) double overlaps[4], closing[4], strength[4];
-    store(overlap, overlaps);
-    store(zero - parting * inverse, closing);
-    for (std::size_t k = 0; k < 4; ++k) strength[k] = law.force(overlaps[k], closing[k]);
-    // Per branch vector; zero where grains do not touch, also where a pair that fills up the list gave 0/0.
-    store(where_not_negative(overlap, load(strength) * inverse), strength);
+}
+
+template <int k>
+HWY_INLINE void act_on_both(Wide strength, const Wide (&branch)[4], const CrossingPairs::Pair* pair,
+                            Quad* force) {
+  const Wide f = spread_row<k>(strength) * branch[k];
+  add(lower(f), force[pair[k].i]);
+  subtract(lower(f), force[pair[k].j]);
+  if constexpr (lanes == 8) {
+    add(upper(f), force[pair[k + second].i]);
+    subtract(upper(f), force[pair[k + second].j]);
+  }
+}
+
+void add_forces_across(const Constants& constants, const CrossingPairs& list, const Quad* shifts,
+                       Grains& grains) {
+  const Quad* const place = grains.place.data();
+  const Quad* const motion = grains.motion.data();
+  Quad* const force = grains.force.data();
+  for (std::size_t p = 0; p < list.pairs.size(); p += lanes) {
+    const CrossingPairs::Pair* const pair = &list.pairs[p];
+    Wide branch[4], velocity[4];
     for (std::size_t k = 0; k < 4; ++k) {
-      const Four f = all(strength[k]);
-      store(mul_add(f, branch[k], load(force[pair[k].i])), force[pair[k].i]);
-      store(mul_sub_from(f, branch[k], load(force[pair[k].j])), force[pair[k].j]);
+      const CrossingPairs::Pair &a = pair[k], &b = pair[k + second];
+      branch[k] = mul_sub_from(constants.apart, rows(place[a.j], place[b.j]), rows(place[a.i], place[b.i])) -
+                  rows(shifts[a.image], shifts[b.image]);
+      velocity[k] = rows(motion[a.i], motion[b.i]) - rows(motion[a.j], motion[b.j]);
     }
+    const Wide strength = strength_of(constants, branch, velocity);
+    act_on_both<0>(strength, branch, pair, force);
+    act_on_both<1>(strength, branch, pair, force);
+    act_on_both<2>(strength, branch, pair, force);
+    act_on_both<3>(strength, branch, pair, force);
   }
 }
 
 void add_all_forces(const LinearContact& law, const Pairs& pairs, const Vec3& rate, const Quad* shifts,
                     Grains& grains) {
-  add_forces<false>(law, pairs.within, rate, shifts, grains);
-  add_forces<true>(law, pairs.crossing, rate, shifts, grains);
+  const Constants constants{law, wide(rate[0]), wide(rate[1]), wide(rate[2])};
+  add_forces_within(constants, pairs.within, grains);
+  add_forces_across(constants, pairs.crossing, shifts, grains);
 }
 
 }  // namespace grainlaw::dem::HWY_NAMESPACE

@@ -7,25 +7,63 @@ namespace grainlaw::dem::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 constexpr hn::FixedTag<double, 4> tag;
+#if HWY_MAX_BYTES >= 64
+constexpr std::size_t lanes = 8;
+#else
+constexpr std::size_t lanes = 4;
+#endif
+constexpr hn::FixedTag<double, lanes> wide_tag;
 
-struct Four {
-  hn::Vec<decltype(tag)> v;
+template <class V>
+struct Vector {
+  V v;
 };
+using Four = Vector<hn::Vec<decltype(tag)>>;
+using Wide = Vector<hn::Vec<decltype(wide_tag)>>;
 HWY_INLINE Four load(const double* p) { return {hn::LoadU(tag, p)}; }
 HWY_INLINE void store(Four a, double* p) { hn::StoreU(a.v, tag, p); }
 HWY_INLINE Four all(double a) { return {hn::Set(tag, a)}; }
-HWY_INLINE Four operator+(Four a, Four b) { return {hn::Add(a.v, b.v)}; }
-HWY_INLINE Four operator-(Four a, Four b) { return {hn::Sub(a.v, b.v)}; }
-HWY_INLINE Four operator*(Four a, Four b) { return {hn::Mul(a.v, b.v)}; }
-HWY_INLINE Four operator/(Four a, Four b) { return {hn::Div(a.v, b.v)}; }
+template <class V>
+HWY_INLINE Vector<V> operator+(Vector<V> a, Vector<V> b) {
+  return {hn::Add(a.v, b.v)};
+}
+template <class V>
+HWY_INLINE Vector<V> operator-(Vector<V> a, Vector<V> b) {
+  return {hn::Sub(a.v, b.v)};
+}
+template <class V>
+HWY_INLINE Vector<V> operator*(Vector<V> a, Vector<V> b) {
+  return {hn::Mul(a.v, b.v)};
+}
+template <class V>
+HWY_INLINE Vector<V> operator*(double a, Vector<V> b) {
+  return {hn::Mul(hn::Set(hn::DFromV<V>(), a), b.v)};
+}
+template <class V>
+HWY_INLINE Vector<V> operator/(Vector<V> a, Vector<V> b) {
+  return {hn::Div(a.v, b.v)};
+}
 /// a b + c, and c - a b, each rounded once.
-HWY_INLINE Four mul_add(Four a, Four b, Four c) { return {hn::MulAdd(a.v, b.v, c.v)}; }
-HWY_INLINE Four mul_sub_from(Four a, Four b, Four c) { return {hn::NegMulAdd(a.v, b.v, c.v)}; }
-HWY_INLINE Four root(Four a) { return {hn::Sqrt(a.v)}; }
-HWY_INLINE Four larger(Four a, Four b) { return {hn::Max(a.v, b.v)}; }
+template <class V>
+HWY_INLINE Vector<V> mul_add(Vector<V> a, Vector<V> b, Vector<V> c) {
+  return {hn::MulAdd(a.v, b.v, c.v)};
+}
+template <class V>
+HWY_INLINE Vector<V> mul_sub_from(Vector<V> a, Vector<V> b, Vector<V> c) {
+  return {hn::NegMulAdd(a.v, b.v, c.v)};
+}
+template <class V>
+HWY_INLINE Vector<V> root(Vector<V> a) {
+  return {hn::Sqrt(a.v)};
+}
+template <class V>
+HWY_INLINE Vector<V> larger(Vector<V> a, Vector<V> b) {
+  return {hn::Max(a.v, b.v)};
+}
 /// `a` where `test` >= 0, else 0; also where `a` is not a number.
-HWY_INLINE Four where_not_negative(Four test, Four a) {
-  return {hn::IfThenElseZero(hn::Ge(test.v, hn::Zero(tag)), a.v)};
+template <class V>
+HWY_INLINE Vector<V> where_not_negative(Vector<V> test, Vector<V> a) {
+  return {hn::IfThenElseZero(hn::Ge(test.v, hn::Zero(hn::DFromV<V>())), a.v)};
 }
 /// The last of the four, four times.
 HWY_INLINE Four spread_last(Four a) {
@@ -39,8 +77,45 @@ HWY_INLINE Four sum(Four a) {
   const auto pairs = hn::Add(a.v, hn::Reverse2(tag, a.v));
   return {hn::Add(pairs, hn::SwapAdjacentBlocks(pairs))};
 }
-/// The first three columns of four rows.
-HWY_INLINE void transpose(const Four (&row)[4], Four& x, Four& y, Four& z) {
+HWY_INLINE Wide load_wide(const double* p) { return {hn::LoadU(wide_tag, p)}; }
+#if HWY_MAX_BYTES >= 64
+HWY_INLINE void store(Wide a, double* p) { hn::StoreU(a.v, wide_tag, p); }
+#endif
+HWY_INLINE Wide wide(double a) { return {hn::Set(wide_tag, a)}; }
+#if HWY_MAX_BYTES >= 64
+HWY_INLINE Wide rows(const Quad& a, const Quad& b) {
+  return {hn::Combine(wide_tag, hn::LoadU(tag, &b.x), hn::LoadU(tag, &a.x))};
+}
+HWY_INLINE Four lower(Wide a) { return {hn::LowerHalf(tag, a.v)}; }
+HWY_INLINE Four upper(Wide a) { return {hn::UpperHalf(tag, a.v)}; }
+template <int k>
+HWY_INLINE Wide spread_row(Wide a) {
+  return {hn::Vec<decltype(wide_tag)>{_mm512_permutex_pd(a.v.raw, 0x55 * k)}};
+}
+/// The columns of rows.
+HWY_INLINE void transpose(const Wide (&row)[4], Wide& x, Wide& y, Wide& z, Wide& w) {
+  const auto low01 = hn::InterleaveLower(wide_tag, row[0].v, row[1].v),
+             low23 = hn::InterleaveLower(wide_tag, row[2].v, row[3].v);
+  const auto high01 = hn::InterleaveUpper(wide_tag, row[0].v, row[1].v),
+             high23 = hn::InterleaveUpper(wide_tag, row[2].v, row[3].v);
+  x = {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(low23), low01)};
+  y = {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(high23), high01)};
+  z = {hn::OddEvenBlocks(low23, hn::SwapAdjacentBlocks(low01))};
+  w = {hn::OddEvenBlocks(high23, hn::SwapAdjacentBlocks(high01))};
+}
+#else
+HWY_INLINE Wide rows(const Quad& a, const Quad&) { return {hn::LoadU(tag, &a.x)}; }
+HWY_INLINE Four lower(Wide a) { return a; }
+HWY_INLINE Four upper(Wide a) { return a; }
+template <int k>
+HWY_INLINE Wide spread_row(Wide a) {
+  const auto both = hn::Broadcast<k % 2>(a.v);
+  if constexpr (k < 2)
+    return {hn::ConcatLowerLower(tag, both, both)};
+  else
+    return {hn::ConcatUpperUpper(tag, both, both)};
+}
+HWY_INLINE void transpose(const Wide (&row)[4], Wide& x, Wide& y, Wide& z, Wide& w) {
   const auto low01 = hn::InterleaveLower(tag, row[0].v, row[1].v),
              low23 = hn::InterleaveLower(tag, row[2].v, row[3].v);
   const auto high01 = hn::InterleaveUpper(tag, row[0].v, row[1].v),
@@ -48,13 +123,18 @@ HWY_INLINE void transpose(const Four (&row)[4], Four& x, Four& y, Four& z) {
   x = {hn::ConcatLowerLower(tag, low23, low01)};
   y = {hn::ConcatLowerLower(tag, high23, high01)};
   z = {hn::ConcatUpperUpper(tag, low23, low01)};
+  w = {hn::ConcatUpperUpper(tag, high23, high01)};
 }
+#endif
+HWY_INLINE Wide wide_quad(const Quad& q) { return rows(q, q); }
 
 #else
 
 struct Four {
   double v[4];
 };
+using Wide = Four;
+constexpr std::size_t lanes = 4;
 template <class F>
 HWY_INLINE Four each(F&& f) {
   return {{f(0), f(1), f(2), f(3)}};
@@ -90,10 +170,24 @@ HWY_INLINE Four where_not_negative(Four test, Four a) {
 HWY_INLINE Four spread_last(Four a) { return all(a.v[3]); }
 HWY_INLINE Four with_last(Four a, Four b) { return {{a.v[0], a.v[1], a.v[2], b.v[3]}}; }
 HWY_INLINE Four sum(Four a) { return all((a.v[0] + a.v[1]) + (a.v[2] + a.v[3])); }
-HWY_INLINE void transpose(const Four (&row)[4], Four& x, Four& y, Four& z) {
+HWY_INLINE Four operator*(double a, Four b) {
+  return each([&](int k) { return a * b.v[k]; });
+}
+HWY_INLINE Wide wide(double a) { return all(a); }
+HWY_INLINE Wide load_wide(const double* p) { return load(p); }
+HWY_INLINE Wide wide_quad(const Quad& q) { return load(&q.x); }
+HWY_INLINE Wide rows(const Quad& a, const Quad&) { return load(&a.x); }
+HWY_INLINE Four lower(Wide a) { return a; }
+HWY_INLINE Four upper(Wide a) { return a; }
+template <int k>
+HWY_INLINE Wide spread_row(Wide a) {
+  return all(a.v[k]);
+}
+HWY_INLINE void transpose(const Four (&row)[4], Four& x, Four& y, Four& z, Four& w) {
   x = each([&](int k) { return row[k].v[0]; });
   y = each([&](int k) { return row[k].v[1]; });
   z = each([&](int k) { return row[k].v[2]; });
+  w = each([&](int k) { return row[k].v[3]; });
 }
 
 #endif

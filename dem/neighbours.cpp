@@ -10,12 +10,13 @@ namespace grainlaw::dem {
 
 namespace {
 
-constexpr double rest_budget = 0.01;    // s_i of a grain at rest, in units of the mean radius
-constexpr double box_budget = 1e-3;     // 1 - e_min: the compression of the box that an inner list survives
-constexpr double outer_skin = 0.7;      // in units of the mean radius; less where the box is narrow
-constexpr double least_skin = 0.02;     // the narrowest outer skin worth listing
-constexpr std::size_t block = 32;       // grains whose pairs are interleaved
-constexpr double flight_share = 0.125;  // s_i at most this share of the outer skin
+constexpr double rest_budget = 0.01;  // s_i of a grain at rest, in units of the mean radius
+constexpr double box_budget = 1e-3;   // 1 - e_min: the compression of the box that an inner list survives
+constexpr double outer_skin = 0.7;    // in units of the mean radius; less where the box is narrow
+constexpr double least_skin = 0.02;   // the narrowest outer skin worth listing
+constexpr std::uint32_t block = 64;   // grains that are grouped by their number of partners
+constexpr std::uint32_t most_told_apart = 31;  // numbers of partners
+constexpr double flight_share = 0.125;         // s_i at most this share of the outer skin
 
 /// Smallest stretch, at most 1.
 double shrink(const Vec3& stretch) { return std::min({1.0, stretch[0], stretch[1], stretch[2]}); }
@@ -124,49 +125,59 @@ void Neighbours::filter(const Grains& grains, const Cell& cell) {
     }
   }
   near_begin_[count] = n;
-  interleave(grains);
-  PairList& crossing = inner_.crossing;
+  group();
+  CrossingPairs& crossing = inner_.crossing;
   crossing.pairs.clear();
-  crossing.reach.clear();
-  crossing.image.clear();
   for (const auto& [i, j, image] : outer_.crossing)
-    if (near(inner_reference_[i], inner_reference_[j], shifts[image])) {
-      crossing.pairs.push_back({i, j});
-      crossing.reach.push_back(grains.place[i].w + grains.place[j].w);
-      crossing.image.push_back(image);
-    }
+    if (near(inner_reference_[i], inner_reference_[j], shifts[image]))
+      crossing.pairs.push_back({i, j, image});
   crossing.fill_up();
   for (std::size_t i = 0; i < count; ++i) inner_reference_[i].w = budget_[i] * budget_[i];
 }
 
-/// Orders the pairs so that those taken together have different grains i where possible (the first partners
-/// of a block of grains, then their second partners, ...): adding to one force four times in a row would wait
-/// for memory each time.
-void Neighbours::interleave(const Grains& grains) {
-  const std::size_t count = grains.count();
-  PairList& within = inner_.within;
-  within.pairs.resize(near_begin_[count]);
-  within.reach.resize(near_begin_[count]);
-  std::size_t n = 0;
-  std::array<std::uint32_t, block> open{};
-  for (std::size_t first = 0; first < count; first += block) {
-    std::size_t left = 0;
-    for (std::size_t i = first; i < std::min(first + block, count); ++i)
-      if (near_begin_[i] < near_begin_[i + 1]) open[left++] = static_cast<std::uint32_t>(i);
-    for (std::uint32_t rank = 0; left > 0; ++rank) {
-      std::size_t kept = 0;
-      for (std::size_t k = 0; k < left; ++k) {
-        const std::uint32_t i = open[k], j = near_[near_begin_[i] + rank];
-        within.pairs[n] = {i, j};
-        within.reach[n] = grains.place[i].w + grains.place[j].w;
-        ++n;
-        open[kept] = i;
-        kept += near_begin_[i] + rank + 1 < near_begin_[i + 1] ? 1u : 0u;
-      }
-      left = kept;
-    }
+/// Groups grains that lie side by side and have about as many partners.
+void Neighbours::group() {
+  const auto count = static_cast<std::uint32_t>(near_begin_.size() - 1);
+  GroupedPairs& within = inner_.within;
+  within.groups.clear();
+  within.partner.clear();
+  within.count = near_begin_[count];
+  std::array<std::uint32_t, block> sorted{};
+  const auto partners_of = [this](std::uint32_t i) { return near_begin_[i + 1] - near_begin_[i]; };
+  for (std::uint32_t first = 0; first < count; first += block) {
+    const std::uint32_t last = std::min(first + block, count);
+    // By the number of partners, most first; those without any are left out.
+    std::array<std::uint32_t, most_told_apart + 2> begin{};
+    const auto rank = [&](std::uint32_t i) {
+      return most_told_apart - std::min(partners_of(i), most_told_apart);
+    };
+    for (std::uint32_t i = first; i < last; ++i) ++begin[rank(i) + 1];
+    for (std::uint32_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
+    const std::uint32_t with_any = begin[most_told_apart];
+    for (std::uint32_t i = first; i < last; ++i) sorted[begin[rank(i)]++] = i;
+    for (std::uint32_t k = 0; k < with_any; k += GroupedPairs::width)
+      add_group(&sorted[k], std::min<std::uint32_t>(GroupedPairs::width, with_any - k));
   }
-  within.fill_up();
+}
+
+void Neighbours::add_group(const std::uint32_t* grain, std::uint32_t grains) {
+  GroupedPairs& within = inner_.within;
+  GroupedPairs::Group group{};
+  std::uint32_t most = 0;
+  for (std::uint32_t k = 0; k < GroupedPairs::width; ++k) {
+    group.grain[k] = grain[k < grains ? k : 0];
+    if (k < grains) most = std::max(most, near_begin_[grain[k] + 1] - near_begin_[grain[k]]);
+  }
+  group.first = static_cast<std::uint32_t>(within.partner.size());
+  group.last = group.first + most * static_cast<std::uint32_t>(GroupedPairs::width);
+  within.partner.resize(group.last);
+  for (std::uint32_t k = 0; k < GroupedPairs::width; ++k) {
+    const std::uint32_t i = group.grain[k], begin = near_begin_[i];
+    const std::uint32_t own = k < grains ? near_begin_[i + 1] - begin : 0;
+    std::uint32_t* to = &within.partner[group.first + k];
+    for (std::uint32_t n = 0; n < most; ++n, to += GroupedPairs::width) *to = n < own ? near_[begin + n] : i;
+  }
+  within.groups.push_back(group);
 }
 
 }  // namespace grainlaw::dem

@@ -48,7 +48,8 @@ class Neighbours {
   bool outer_covers(const Grains& grains, const Cell& cell) const;
   void sort_and_list(Grains& grains, const Cell& cell);
   void filter(const Grains& grains, const Cell& cell);
-  void interleave(const Grains& grains);
+  void group();
+  void add_group(const std::uint32_t* grain, std::uint32_t grains);
 
   double unit_, largest_radius_;
   double outer_skin_ = 0;

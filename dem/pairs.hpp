@@ -12,25 +12,40 @@
 
 namespace grainlaw::dem {
 
-/// Pairs in the order in which the force loop takes them, four at a time.
-struct PairList {
+/// Pairs in groups: eight grains at a time, each with its partners, filled up to as many as the one of them
+/// with the most has. So the force loop keeps eight grains in registers while it walks through their
+/// partners.
+struct GroupedPairs {
+  static constexpr std::size_t width = 8;
+  struct Group {
+    std::array<std::uint32_t, width> grain;
+    std::uint32_t first, last;  ///< their partners: eight at a time, one for each grain
+  };
+  std::vector<Group> groups;
+  std::vector<std::uint32_t> partner;  ///< a place that is filled up holds the grain itself
+  std::size_t count = 0;               ///< without what fills up
+
+  /// Calls f(i, j) for every pair.
+  template <class F>
+  void for_each(F&& f) const {
+    for (const Group& group : groups)
+      for (std::uint32_t p = group.first; p < group.last; ++p)
+        if (const std::uint32_t i = group.grain[p % width]; partner[p] != i) f(i, partner[p]);
+  }
+};
+
+/// Pairs that meet through a face of the box, eight at a time.
+struct CrossingPairs {
+  static constexpr std::size_t width = 8;
   struct Pair {
-    std::uint32_t i, j;
+    std::uint32_t i, j, image;  ///< `image` of j that i meets
   };
   std::vector<Pair> pairs;
-  std::vector<double> reach;         ///< r_i + r_j, mm
-  std::vector<std::uint32_t> image;  ///< of j that i meets; only where pairs cross a face of the box
-  std::size_t count = 0;             ///< without the pairs that fill up the last four
+  std::size_t count = 0;  ///< without those that fill up the last eight: pairs of a grain with itself
 
-  /// Pairs taken at a time; lists are filled up to a multiple of it with pairs that never touch (i = j, reach
-  /// < 0).
-  static constexpr std::size_t group = 4;
   void fill_up() {
     count = pairs.size();
-    const std::size_t whole = (count + group - 1) / group * group;
-    pairs.resize(whole, {0, 0});
-    reach.resize(whole, -1.0);
-    if (!image.empty()) image.resize(whole, Cell::home_image);
+    pairs.resize((count + width - 1) / width * width, {0, 0, Cell::home_image});
   }
 };
 
@@ -38,7 +53,8 @@ struct PairList {
 /// the image of j that i meets. So the loop over pairs never searches for the nearest image, and a small box
 /// may hold the same two grains twice, through different images.
 struct Pairs {
-  PairList within, crossing;
+  GroupedPairs within;
+  CrossingPairs crossing;
   std::size_t count() const { return within.count + crossing.count; }
 };
 
@@ -53,17 +69,18 @@ struct Contact {
 /// Calls f(Contact) for every pair with overlap >= 0.
 template <class F>
 void for_each_contact(const Pairs& pairs, const Grains& grains, const Cell& cell, F&& f) {
-  const auto visit = [&](const PairList& list, std::size_t p, const Quad& shift) {
-    const auto [i, j] = list.pairs[p];
+  const auto visit = [&](std::uint32_t i, std::uint32_t j, const Quad& shift) {
     const Quad &a = grains.place[i], &b = grains.place[j];
     const Vec3 d{a.x - b.x - shift.x, a.y - b.y - shift.y, a.z - b.z - shift.z};
-    const double distance = norm(d);
-    if (distance <= list.reach[p]) f(Contact{i, j, d, distance, list.reach[p] - distance});
+    const double distance = norm(d), reach = a.w + b.w;
+    if (distance <= reach) f(Contact{i, j, d, distance, reach - distance});
   };
   const std::array<Quad, 27> shifts = cell.shifts();
-  for (std::size_t p = 0; p < pairs.within.count; ++p) visit(pairs.within, p, shifts[Cell::home_image]);
-  for (std::size_t p = 0; p < pairs.crossing.count; ++p)
-    visit(pairs.crossing, p, shifts[pairs.crossing.image[p]]);
+  pairs.within.for_each([&](std::uint32_t i, std::uint32_t j) { visit(i, j, shifts[Cell::home_image]); });
+  for (std::size_t p = 0; p < pairs.crossing.count; ++p) {
+    const auto& [i, j, image] = pairs.crossing.pairs[p];
+    visit(i, j, shifts[image]);
+  }
 }
 
 }  // namespace grainlaw::dem
