@@ -3,6 +3,8 @@
 #include <charconv>
 #include <system_error>
 
+#include "grainlaw/dem/simd.hpp"
+#include "grainlaw/dem/watch.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::apps {
@@ -47,6 +49,41 @@ void check_output(const std::string& option, const std::filesystem::path& output
   for (const fs::path& input : inputs)
     if (fs::equivalent(output, input, code))
       throw Error("", option, "must not be " + input.string() + ", which this command reads");
+}
+
+std::string quoted(const std::string& word) {
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./+,:@%=") ==
+      std::string::npos)
+    return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+void RunArguments::add_to(CLI::App& command, const std::string& resume_help) {
+  command.add_flag("--resume", resume, resume_help);
+  command
+      .add_option("--checkpoint", checkpoint,
+                  "seconds from one checkpoint of a test to the next (default: 60)")
+      ->type_name("SECONDS");
+  command
+      .add_option("--simd", simd,
+                  "instruction set to run on: avx512, avx2 or baseline (default: the best of this machine)")
+      ->type_name("NAME");
+}
+
+void RunArguments::force_simd() const {
+  if (!simd.empty()) dem::force_simd_target(simd);
+}
+
+double RunArguments::checkpoint_every() const {
+  return checkpoint.empty() ? dem::RunHooks{}.checkpoint_every
+                            : read_number("--checkpoint", checkpoint, between(0, 1e9));
+}
+
+std::string RunArguments::words() const {
+  return (checkpoint.empty() ? "" : " --checkpoint " + quoted(checkpoint)) +
+         (simd.empty() ? "" : " --simd " + quoted(simd));
 }
 
 }  // namespace grainlaw::apps

@@ -35,14 +35,14 @@ constexpr long most_workers = 1024;
 
 struct Arguments {
   std::string campaign, output, jobs;
-  bool resume = false;
+  RunArguments run;
 };
 
 /// The campaign to run: as given, that of the folder to go on with, or the quick one.
 fs::path campaign_file(const Arguments& arguments) {
   if (!arguments.campaign.empty()) return arguments.campaign;
   const fs::path written = fs::path(arguments.output) / "campaign.json";
-  if (arguments.resume && !arguments.output.empty() && fs::exists(written)) return written;
+  if (arguments.run.resume && !arguments.output.empty() && fs::exists(written)) return written;
   return find_data("campaigns/quick.json");
 }
 
@@ -52,23 +52,13 @@ std::size_t worker_count(const Arguments& arguments) {
   return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, most_workers);
 }
 
-/// A word as a shell reads it back.
-std::string quoted(const std::string& word) {
-  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./+,:@%=") ==
-      std::string::npos)
-    return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 /// The command that goes on where this one stopped.
 std::string resume_command(const Arguments& arguments, const fs::path& dir) {
   std::string command = quoted(program_name()) + " calibrate";
   if (!arguments.campaign.empty()) command += " " + quoted(arguments.campaign);
   command += " -o " + quoted(dir.string());
   if (!arguments.jobs.empty()) command += " --jobs " + arguments.jobs;
-  return command + " --resume";
+  return command + arguments.run.words() + " --resume";
 }
 
 class Calibration {
@@ -77,17 +67,17 @@ class Calibration {
       : arguments_(arguments),
         campaign_(campaign),
         folder_(campaign, dir,
-                arguments.resume ? calibrate::CampaignFolder::Use::resume
-                                 : calibrate::CampaignFolder::Use::fresh),
+                arguments.run.resume ? calibrate::CampaignFolder::Use::resume
+                                     : calibrate::CampaignFolder::Use::fresh),
         talk_(terminal_, dir),
-        times_(dir, arguments.resume) {}
+        times_(dir, arguments.run.resume) {}
 
   int run() {
     const calibrate::CampaignResult simulated = simulate();
     if (simulated.stopped || interrupt_.stop()) {
-      talk_.complain(fmt::format("stopped; {} finished tests are kept; go on with: {}",
-                                 simulated.reused + simulated.finished,
-                                 resume_command(arguments_, folder_.dir())));
+      talk_.complain(fmt::format(
+          "stopped; {} finished tests are kept, and a checkpoint of each under way; go on with: {}",
+          simulated.reused + simulated.finished, resume_command(arguments_, folder_.dir())));
       return interrupted;
     }
     if (simulated.reused + simulated.finished == 0) return say_failures(simulated);  // nothing to fit
@@ -108,7 +98,8 @@ class Calibration {
                           workers == 1 ? "one test" : fmt::format("{} tests", workers)));
     calibrate::CampaignResult result;
     times_.measure("simulate", [&] {
-      result = calibrate::run_campaign(campaign_, folder_, {workers, talk_.hooks(interrupt_.stop())});
+      result = calibrate::run_campaign(
+          campaign_, folder_, {workers, talk_.hooks(interrupt_.stop()), arguments_.run.checkpoint_every()});
     });
     talk_.say(fmt::format("simulated {} tests in {}{}", result.finished, time_text(result.wall_s),
                           result.reused > 0 ? fmt::format(", kept {} from before", result.reused) : ""));
@@ -148,6 +139,8 @@ class Calibration {
 };
 
 int run(const Arguments& arguments) {
+  arguments.run.force_simd();
+  arguments.run.checkpoint_every();
   worker_count(arguments);  // what would end the run is said before it begins, not after the simulation
   const auto campaign = calibrate::Campaign::load(campaign_file(arguments));
   find_thesis(campaign.material.w);
@@ -171,8 +164,7 @@ Action add_calibrate(CLI::App& program) {
       ->type_name("DIR");
   command->add_option("--jobs", arguments->jobs, "tests to run at the same time (default: one per core)")
       ->type_name("N");
-  command->add_flag("--resume", arguments->resume,
-                    "go on where an interrupted run stopped; finished tests are kept");
+  arguments->run.add_to(*command, "go on where an interrupted run stopped; finished tests are kept");
   command->footer(
       "Examples:\n"
       "  grainlaw calibrate\n"

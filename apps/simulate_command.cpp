@@ -7,10 +7,13 @@
 #include <string>
 #include <string_view>
 
+#include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/apps/commands.hpp"
 #include "grainlaw/apps/interrupt.hpp"
+#include "grainlaw/apps/locations.hpp"
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/calibrate/lock_file.hpp"
+#include "grainlaw/dem/checkpoint.hpp"
 #include "grainlaw/dem/element_test.hpp"
 #include "grainlaw/element/error.hpp"
 
@@ -22,6 +25,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::string scene, output;
+  RunArguments run;
 };
 
 /// The folder as an absolute path without "." and "/" at its end, so that names can be put after it.
@@ -37,13 +41,14 @@ void check_free(const fs::path& folder, const std::string& shown) {
     throw Error(shown, "", "is not empty, and nothing in it is overwritten; give another directory with -o");
 }
 
-/// Removes the folder that a killed run left; refuses one that holds anything else.
+/// Removes the folder of a run that ended before its first checkpoint; refuses one that holds anything else.
 void remove_leftover(const fs::path& part) {
   if (!fs::exists(part)) return;
   for (const auto& entry : fs::directory_iterator(part)) {
     const std::string name = entry.path().filename().string();
     bool ours = false;
-    for (const std::string_view file : {"scene.json", "snapshots.h5", "provenance.json", "record.csv"})
+    for (const std::string_view file :
+         {"scene.json", "snapshots.h5", "provenance.json", "record.csv", "rows.csv", "checkpoint."})
       ours = ours || name.starts_with(file);
     if (!ours)
       throw Error(part.string(), "",
@@ -52,9 +57,31 @@ void remove_leftover(const fs::path& part) {
   fs::remove_all(part);
 }
 
+/// Makes the folder ready for the test: empty, or with the checkpoint that it is to go on from.
+void make_ready(const fs::path& part, const dem::Scene& scene, const Arguments& arguments) {
+  if (!dem::has_checkpoint(part)) {
+    if (arguments.run.resume && !fs::exists(part))
+      throw Error(arguments.output, "",
+                  "holds no interrupted test to go on with (no " + part.filename().string() +
+                      " beside it); leave --resume out to start one");
+    return remove_leftover(part);
+  }
+  if (!arguments.run.resume)
+    throw Error(
+        arguments.output, "",
+        "holds an interrupted test; go on with --resume, or remove " + part.string() + " to start anew");
+  dem::check_checkpoint(part, scene);
+}
+
+std::string resume_command(const Arguments& arguments) {
+  return quoted(program_name()) + " simulate " + quoted(arguments.scene) + " -o " + quoted(arguments.output) +
+         arguments.run.words() + " --resume";
+}
+
 /// A live line on a terminal.
-dem::RunHooks hooks(Terminal& terminal, const Interrupt& interrupt) {
+dem::RunHooks hooks(Terminal& terminal, const Interrupt& interrupt, const Arguments& arguments) {
   dem::RunHooks hooks;
+  hooks.checkpoint_every = arguments.run.checkpoint_every();
   hooks.stop = &interrupt.stop();
   if (terminal.live())
     hooks.progress = [&terminal](double fraction, const std::string& stage) {
@@ -64,26 +91,27 @@ dem::RunHooks hooks(Terminal& terminal, const Interrupt& interrupt) {
 }
 
 int run(const Arguments& arguments) {
+  arguments.run.force_simd();
+  arguments.run.checkpoint_every();  // bad input is refused before anything is made
   const dem::Scene scene = dem::Scene::load(arguments.scene);
   const fs::path folder = folder_of(arguments.output), part = folder.string() + ".part";
   check_free(folder, arguments.output);
   fs::create_directories(folder.parent_path());
   const calibrate::LockFile lock(part.string() + ".lock", arguments.output);
   check_free(folder, arguments.output);
-  remove_leftover(part);
+  make_ready(part, scene, arguments);
   Interrupt interrupt;
   Terminal terminal;
   dem::RunSummary summary;
   try {
-    summary = dem::run_element_test(scene, part, hooks(terminal, interrupt));
+    summary = dem::run_element_test(scene, part, hooks(terminal, interrupt, arguments));
   } catch (...) {
     std::error_code ignored;
-    fs::remove_all(part, ignored);
+    if (!dem::has_checkpoint(part)) fs::remove_all(part, ignored);
     throw;
   }
   if (summary.stopped) {
-    fs::remove_all(part);
-    terminal.warn("stopped; nothing was written");
+    terminal.warn("stopped; go on with: " + resume_command(arguments));
     return interrupted;
   }
   fs::rename(part, folder);
@@ -105,7 +133,11 @@ Action add_simulate(CLI::App& program) {
   command->add_option("-o,--output", arguments->output, "directory to make; must not exist or be empty")
       ->type_name("DIR")
       ->required();
-  command->footer("Example:\n  grainlaw simulate data/scenes/d2.json -o out/d2");
+  arguments->run.add_to(*command, "go on where an interrupted run stopped");
+  command->footer(
+      "Examples:\n"
+      "  grainlaw simulate data/scenes/d2.json -o out/d2\n"
+      "  grainlaw simulate data/scenes/d2.json -o out/d2 --resume");
   return [arguments] { return run(*arguments); };
 }
 

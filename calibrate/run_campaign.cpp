@@ -13,6 +13,7 @@
 
 #include "grainlaw/calibrate/campaign_schedule.hpp"
 #include "grainlaw/calibrate/kept_record.hpp"
+#include "grainlaw/dem/checkpoint.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 
@@ -34,6 +35,7 @@ double seconds_since(Clock::time_point begin) {
 /// What a running job tells about itself.
 struct Pulse {
   Clock::time_point begin;
+  double begin_fraction = 0;  ///< where it went on from a checkpoint
   double fraction = 0;
   std::string stage;
 };
@@ -93,12 +95,17 @@ class Runner {
   std::deque<Ending> endings_;
 };
 
-/// Removes what an interrupted run left; finds the records that are there, and checks all that is to be gone
-/// on with.
+/// Removes what an interrupted run left, but for tests that can go on; finds the records that are there, and
+/// checks all that is to be gone on with.
 void Runner::clear() {
   for (std::size_t i = 0; i < jobs_.size(); ++i) {
-    fs::remove_all(folder_.part(jobs_[i].record));
-    if (!folder_.has_record(jobs_[i].record)) continue;
+    const fs::path part = folder_.part(jobs_[i].record);
+    const bool made = folder_.has_record(jobs_[i].record);
+    if (!made && dem::has_checkpoint(part))
+      dem::check_checkpoint(part, dem::Scene::read(Reader(jobs_[i].scene, jobs_[i].record), part));
+    else
+      fs::remove_all(part);
+    if (!made) continue;
     check_kept_record(folder_.record(jobs_[i].record), jobs_[i].scene);
     schedule_.reuse(i);
     reused_work_ += jobs_[i].particle_steps;
@@ -195,14 +202,16 @@ dem::RunSummary Runner::run_test(std::size_t index) {
   const dem::Scene scene = dem::Scene::read(Reader(job.scene, job.record), part);
   const auto progress = [this, index](double fraction, const std::string& stage) {
     const std::lock_guard lock(mutex_);
+    if (pulses_[index].stage.empty()) pulses_[index].begin_fraction = fraction;
     pulses_[index].fraction = fraction;
     pulses_[index].stage = stage;
   };
-  const dem::RunSummary summary = options_.run_test(scene, part, {progress, &halt_});
-  if (summary.stopped)
-    fs::remove_all(part);
-  else
+  const dem::RunSummary summary =
+      options_.run_test(scene, part, {progress, &halt_, options_.checkpoint_every});
+  if (!summary.stopped)
     fs::rename(part, folder_.record(job.record));
+  else if (!dem::has_checkpoint(part))
+    fs::remove_all(part);
   return summary;
 }
 
@@ -220,8 +229,10 @@ void Runner::handle(const Ending& ending) {
   }
   if (summary.stopped) return;
   ++result_.finished;
-  ended_busy_s_ += summary.wall_s;
-  actual_steps_ += static_cast<double>(summary.particle_steps);
+  const Pulse& pulse = pulses_[ending.job];
+  ended_busy_s_ += seconds_since(pulse.begin);
+  actual_steps_ += (1 - pulse.begin_fraction) * static_cast<double>(summary.particle_steps);
+  reused_work_ += pulse.begin_fraction * jobs_[ending.job].particle_steps;
   if (options_.hooks.finished) options_.hooks.finished({jobs_[ending.job].record, summary}, progress());
 }
 
@@ -235,10 +246,12 @@ void Runner::handle_failure(std::size_t job, const Failure& failure) {
   }
   if (failure.unwritable) {
     std::error_code ignored;
-    fs::remove_all(folder_.part(failed.record), ignored);
+    if (!dem::has_checkpoint(folder_.part(failed.record)))
+      fs::remove_all(folder_.part(failed.record), ignored);
     if (!unwritable_) unwritable_ = failure.unwritable;
     return;
   }
+  dem::remove_checkpoints(folder_.part(failed.record));  // the next try is to start anew
   result_.failed.push_back(failed);
   if (options_.hooks.failed) options_.hooks.failed(failed);
 }
@@ -247,7 +260,7 @@ CampaignProgress Runner::progress() const {
   const std::lock_guard lock(mutex_);
   CampaignProgress now;
   now.jobs = jobs_.size();
-  double total = 0, done = 0, running = 0, busy_s = ended_busy_s_;
+  double total = 0, done = 0, running = 0, before = reused_work_, busy_s = ended_busy_s_;
   for (std::size_t i = 0; i < jobs_.size(); ++i) {
     const double work = jobs_[i].particle_steps;
     const auto state = schedule_.state(i);
@@ -256,6 +269,7 @@ CampaignProgress Runner::progress() const {
     if (state == Schedule::State::done) done += work;
     if (state == Schedule::State::running) {
       running += work * pulses_[i].fraction;
+      before += work * pulses_[i].begin_fraction;
       busy_s += seconds_since(pulses_[i].begin);
       now.running.push_back(jobs_[i].record + (pulses_[i].stage.empty() ? "" : ": " + pulses_[i].stage));
     }
@@ -263,9 +277,9 @@ CampaignProgress Runner::progress() const {
   now.finished = schedule_.count(Schedule::State::done);
   now.fraction = total > 0 ? (done + running) / total : 1;
   const double elapsed = seconds_since(begin_);
-  const double made = done + running - reused_work_;
+  const double made = done + running - before;  // by this process
   if (elapsed < first_estimate_after || !(made > 0)) return now;
-  now.rate = (actual_steps_ + running) / elapsed;
+  now.rate = (actual_steps_ + running - (before - reused_work_)) / elapsed;
   // The rate of one worker in the units of the estimates, so that a bad estimate of a relaxation cancels.
   now.seconds_left = schedule_.time_left(options_.workers, made / busy_s,
                                          [&](std::size_t i) { return pulses_[i].fraction; });

@@ -50,6 +50,7 @@ using RunTest =
 struct RunOptions {
   std::size_t workers = 1;
   CampaignHooks hooks;
+  double checkpoint_every = 60;  ///< s, see dem::RunHooks
   RunTest run_test = dem::run_element_test;
 };
 
@@ -61,8 +62,9 @@ struct CampaignResult {
 };
 
 /// Makes every record of the campaign that is not in the folder yet: in records/NAME.part, renamed when
-/// complete. Failures are also written to failures.json; they are tried again next time. Throws Error if the
-/// disk cannot be written: records made so far are kept.
+/// complete. What an interrupted run left there goes on from its checkpoint; a checkpoint that cannot be gone
+/// on from is an Error, before anything is run. Failures are also written to failures.json; they are tried
+/// again next time. Throws Error if the disk cannot be written: records made so far are kept.
 CampaignResult run_campaign(const Campaign& campaign, const CampaignFolder& folder,
                             const RunOptions& options);
 

@@ -71,6 +71,11 @@ class Cell {
     return table;
   }
 
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.length_, self.rate_);
+  }
+
  private:
   Vec3 length_{1, 1, 1};
   Vec3 rate_{};

@@ -37,6 +37,11 @@ struct LegState {
   std::uint64_t step = 0;       ///< steps taken; 0: the leg has not begun
   Vec3 start_length{};          ///< edges of the box where it began, mm
   double kinetic_at_start = 0;  ///< for relax, ug mm^2/us^2
+
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.step, self.start_length, self.kinetic_at_start);
+  }
 };
 
 /// Called after each step with its number, counted from 1; false leaves the leg there.

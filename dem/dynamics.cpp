@@ -33,6 +33,12 @@ Dynamics::Dynamics(const Material& material, const State& state)
   neighbours_.update(grains_, cell_, 0);
 }
 
+Dynamics::Dynamics(const Material& material, ArchiveReader& archive)
+    : material_(material), law_(LinearContact::of(material)), neighbours_(material.r_mean, 0) {
+  keep(*this, archive);
+  neighbours_.rebuild(grains_);
+}
+
 void Dynamics::start(double dt, const Vec3& rate) {
   grains_.motion = velocities();
   dt_ = dt;

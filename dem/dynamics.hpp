@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "grainlaw/dem/archive.hpp"
 #include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/contact_law.hpp"
 #include "grainlaw/dem/grains.hpp"
@@ -33,6 +34,12 @@ class Dynamics {
  public:
   /// Throws Error as Neighbours::update does.
   Dynamics(const Material& material, const State& state);
+  /// As it was when it was kept.
+  Dynamics(const Material& material, ArchiveReader& archive);
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.grains_, self.cell_, self.neighbours_, self.dt_, self.time_, self.steps_);
+  }
 
   /// Must precede the first step, and steps with another dt (us). `rate` is d(ln L)/dt from now on.
   void start(double dt, const Vec3& rate);

@@ -5,6 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include "grainlaw/dem/archive.hpp"
+#include "grainlaw/dem/checkpoint.hpp"
 #include "grainlaw/dem/drive.hpp"
 #include "grainlaw/dem/preparation.hpp"
 #include "grainlaw/dem/provenance.hpp"
@@ -19,11 +21,37 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// How far a test is, and where it began.
+struct Place {
+  double nu_start = 0;    ///< volume fraction at the start of the path
+  std::size_t stage = 0;  ///< the one it is in
+  LegState leg;           ///< how far on it
+  std::string started = utc_now();
+  double wall_s = 0;  ///< until the last checkpoint
+
+  static Place at_the_beginning(double nu_start) {
+    Place place;
+    place.nu_start = nu_start;
+    return place;
+  }
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.nu_start, self.stage, self.leg, self.started, self.wall_s);
+  }
+};
+
 /// A test under way: the grains, the stages they go through, how far they are and what was recorded.
 class ElementTest {
  public:
   ElementTest(const Scene& scene, std::filesystem::path out_dir, const RunHooks& hooks)
       : ElementTest(scene, std::move(out_dir), hooks, first_state(scene)) {}
+  /// Goes on from a checkpoint.
+  ElementTest(const Scene& scene, std::filesystem::path out_dir, const RunHooks& hooks,
+              ArchiveReader archive);
 
   RunSummary run();
 
@@ -31,19 +59,19 @@ class ElementTest {
   ElementTest(const Scene& scene, std::filesystem::path out_dir, const RunHooks& hooks, const State& start);
   static State first_state(const Scene& scene);
   static double nu_start(const Scene& scene, const State& start);
-  std::vector<Stage> feasible_stages(const Scene& scene, const State& start) const;
   void begin_path();
   void walk();
-  void write_record(Provenance& provenance, const RunSummary& summary) const;
+  double wall_s() const { return place_.wall_s + seconds_since(begin_); }
+  void write_checkpoint() const;
+  void write_record(const RunSummary& summary) const;
 
   const Scene& scene_;
   std::filesystem::path out_dir_;
-  double nu_start_;
+  Clock::time_point begin_ = Clock::now();
+  Place place_;
+  Dynamics dynamics_;
   LongestSteps longest_;
   std::vector<Stage> stages_;
-  Dynamics dynamics_;
-  std::size_t stage_ = 0;  ///< the one it is in
-  LegState leg_;           ///< how far
   Recorder recorder_;
   Watch watch_;
 };
@@ -52,12 +80,28 @@ ElementTest::ElementTest(const Scene& scene, std::filesystem::path out_dir, cons
                          const State& start)
     : scene_(scene),
       out_dir_(std::move(out_dir)),
-      nu_start_(nu_start(scene, start)),
-      longest_(scene, *std::min_element(start.radius.begin(), start.radius.end())),
-      stages_(feasible_stages(scene, start)),
+      place_(Place::at_the_beginning(nu_start(scene, start))),
       dynamics_(scene.material, start),
-      recorder_(scene, out_dir_, nu_start_),
+      longest_(scene, dynamics_.grains().smallest_radius()),
+      stages_(plan_stages(scene, place_.nu_start, longest_)),
+      recorder_(scene, out_dir_, place_.nu_start),
       watch_(hooks, start.count()) {
+  check_width(stages_, start, scene);
+  for (const Stage& stage : stages_) watch_.plan(stage.stepping.steps);
+}
+
+ElementTest::ElementTest(const Scene& scene, std::filesystem::path out_dir, const RunHooks& hooks,
+                         ArchiveReader archive)
+    : scene_(scene),
+      out_dir_(std::move(out_dir)),
+      place_(archive.take<Place>()),
+      dynamics_(scene.material, archive),
+      longest_(scene, dynamics_.grains().smallest_radius()),
+      stages_(plan_stages(scene, place_.nu_start, longest_)),
+      recorder_(scene, out_dir_, place_.nu_start, archive),
+      watch_(hooks, dynamics_.count()) {
+  archive(watch_);
+  archive.finish();
   for (const Stage& stage : stages_) watch_.plan(stage.stepping.steps);
 }
 
@@ -75,59 +119,66 @@ double ElementTest::nu_start(const Scene& scene, const State& start) {
   return packing != nullptr ? packing->nu : start.volume_fraction();
 }
 
-std::vector<Stage> ElementTest::feasible_stages(const Scene& scene, const State& start) const {
-  std::vector<Stage> stages = plan_stages(scene, nu_start_, longest_);
-  check_width(stages, start, scene);
-  return stages;
-}
-
 /// The path starts from the prepared packing as a test does that reads it from a snapshot.
 void ElementTest::begin_path() {
-  if (stage_ > 0) dynamics_ = Dynamics(scene_.material, dynamics_.state());
+  if (place_.stage > 0) dynamics_ = Dynamics(scene_.material, dynamics_.state());
   recorder_.begin_path(dynamics_);
 }
 
 /// Takes the stage to its end, or to where the run is told to stop.
 void ElementTest::walk() {
-  const Stage& stage = stages_[stage_];
-  watch_.enter(stage.name, stage.stepping.steps, leg_.step);
-  recorder_.enter(dynamics_, stage, leg_.step);
-  drive(dynamics_, stage.leg, stage.stepping, leg_, [&](std::uint64_t step) {
+  const Stage& stage = stages_[place_.stage];
+  watch_.enter(stage.name, stage.stepping.steps, place_.leg.step);
+  recorder_.enter(dynamics_, stage, place_.leg.step);
+  drive(dynamics_, stage.leg, stage.stepping, place_.leg, [&](std::uint64_t step) {
     recorder_.after_step(dynamics_, stage, step);
-    return watch_.step();
+    if (!watch_.step()) return false;
+    if (watch_.checkpoint_due()) write_checkpoint();
+    return true;
   });
   if (watch_.stopped()) return;
   recorder_.leave(dynamics_, stage);
   watch_.leave();
-  ++stage_;
-  leg_ = {};
+  ++place_.stage;
+  place_.leg = {};
+}
+
+void ElementTest::write_checkpoint() const {
+  recorder_.flush();
+  Place place = place_;
+  place.wall_s = wall_s();
+  dem::write_checkpoint(out_dir_, scene_,
+                        [&](ArchiveWriter& archive) { archive(place, dynamics_, recorder_, watch_); });
 }
 
 RunSummary ElementTest::run() {
-  const auto begin = Clock::now();
-  Provenance provenance = Provenance::begin(scene_);
   write_file(out_dir_ / "scene.json", scene_.to_json(out_dir_).dump(2) + "\n");
-  while (stage_ < stages_.size() && !watch_.stopped()) {
-    if (stages_[stage_].segment && !recorder_.begun()) begin_path();
+  while (place_.stage < stages_.size() && !watch_.stopped()) {
+    if (stages_[place_.stage].segment && !recorder_.begun()) begin_path();
     walk();
   }
   RunSummary summary;
-  summary.stopped = stage_ < stages_.size();
-  summary.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  summary.stopped = place_.stage < stages_.size();
+  if (summary.stopped) write_checkpoint();
+  summary.wall_s = wall_s();
   summary.particle_steps = watch_.particle_steps();
   if (summary.stopped) return summary;
   summary.warnings = recorder_.warnings();
-  write_record(provenance, summary);
+  write_record(summary);
   return summary;
 }
 
-void ElementTest::write_record(Provenance& provenance, const RunSummary& summary) const {
+void ElementTest::write_record(const RunSummary& summary) const {
+  Provenance provenance = Provenance::begin(scene_);
+  provenance.started = place_.started;
   provenance.wall_time_s = summary.wall_s;
   provenance.particle_steps = summary.particle_steps;
   provenance.time_step = longest_.path;
   provenance.warnings = summary.warnings;
   write_file(out_dir_ / "provenance.json", provenance.to_json().dump(2) + "\n");
   recorder_.record().write_csv(out_dir_ / "record.csv");
+  std::filesystem::remove(out_dir_ / Recorder::rows_file);
+  remove_checkpoints(out_dir_);
 }
 
 void make_directory(const std::filesystem::path& dir) {
@@ -148,6 +199,8 @@ void check_directory(const std::filesystem::path& dir) {
 }  // namespace
 
 RunSummary run_element_test(const Scene& scene, const std::filesystem::path& out_dir, const RunHooks& hooks) {
+  if (has_checkpoint(out_dir))
+    return ElementTest(scene, out_dir, hooks, read_checkpoint(out_dir, scene)).run();
   check_directory(out_dir);
   ElementTest test(scene, out_dir, hooks);
   make_directory(out_dir);

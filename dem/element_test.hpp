@@ -18,12 +18,14 @@ struct RunSummary {
   bool stopped = false;
 };
 
-/// Writes into `out_dir`, which must not exist or be empty: scene.json at the start, snapshots.h5 as they are
-/// taken, provenance.json and, last, record.csv. So a directory without record.csv is an incomplete one: the
-/// test was stopped or failed. The record has one row for the start of the path, and then measure.rows per
-/// segment. Bad input throws Error before anything is written. The run does not depend on hooks, rows (as
-/// long as a segment takes more than two steps per row anyway) or snapshots, and the same scene gives the
-/// same record to the last bit.
+/// Writes into `out_dir`, which must not exist, be empty, or hold a checkpoint of this very test: then the
+/// test goes on from there. It writes scene.json at the start, snapshots.h5 as they are taken,
+/// provenance.json and, last, record.csv. So a directory without record.csv is an incomplete one: the test
+/// was stopped or failed. While it runs, and when it is told to stop, it leaves checkpoints there. The record
+/// has one row for the start of the path, and then measure.rows per segment. Bad input throws Error before
+/// anything is written. The run does not depend on hooks, interruptions, checkpoints, rows (as long as a
+/// segment takes more than two steps per row anyway) or snapshots: on one instruction set, the same scene
+/// gives the same record to the last bit.
 RunSummary run_element_test(const Scene& scene, const std::filesystem::path& out_dir,
                             const RunHooks& hooks = {});
 

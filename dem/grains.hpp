@@ -29,6 +29,11 @@ struct Grains {
   double smallest_radius() const;
   /// Grain `order[i]` becomes grain i.
   void reorder(const std::vector<std::uint32_t>& order);
+
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.place, self.motion, self.half, self.force, self.acceleration, self.id);
+  }
 };
 
 }  // namespace grainlaw::dem

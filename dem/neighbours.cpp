@@ -89,12 +89,24 @@ void Neighbours::sort_and_list(Grains& grains, const Cell& cell) {
     const Vec3 x = cell.wrap({p.x, p.y, p.z});
     p = {x[0], x[1], x[2], p.w};
   }
-  const LinkedCells cells(grains.place, cell, widest_grain + outer_skin_);
+  const LinkedCells cells(grains.place, cell, outer_range());
   grains.reorder(cells.order());
   cells.list_pairs(grains.place, cell, outer_skin_, outer_);
   outer_reference_ = grains.place;
   outer_length_ = cell.length();
   ++sorts_;
+}
+
+/// Both lists follow from where the grains were when they were made: LinkedCells leaves sorted grains where
+/// they are, and the filter knows of the grains only their places and budgets.
+void Neighbours::rebuild(const Grains& grains) {
+  Grains then;
+  then.place = outer_reference_;
+  const Cell outer_cell(outer_length_);
+  LinkedCells(then.place, outer_cell, outer_range()).list_pairs(then.place, outer_cell, outer_skin_, outer_);
+  then.place = inner_reference_;
+  for (std::size_t i = 0; i < then.count(); ++i) then.place[i].w = grains.place[i].w;
+  filter(then, Cell(inner_length_));
 }
 
 void Neighbours::filter(const Grains& grains, const Cell& cell) {

@@ -43,10 +43,20 @@ class Neighbours {
   std::uint64_t updates() const { return updates_; }  ///< how often the inner list was made
   std::uint64_t sorts() const { return sorts_; }      ///< how often the outer list was made
 
+  /// Keeps what the lists were made from; a reader must rebuild() them.
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.largest_radius_, self.outer_skin_, self.outer_reference_, self.outer_length_, self.budget_,
+            self.inner_reference_, self.inner_length_, self.updates_, self.sorts_);
+  }
+  /// Makes the same lists again, in the same order.
+  void rebuild(const Grains& grains);
+
  private:
   void make_budgets(const Grains& grains, double lookahead);
   bool outer_covers(const Grains& grains, const Cell& cell) const;
   void sort_and_list(Grains& grains, const Cell& cell);
+  double outer_range() const { return 2 * largest_radius_ + outer_skin_; }
   void filter(const Grains& grains, const Cell& cell);
   void group();
   void add_group(const std::uint32_t* grain, std::uint32_t grains);

@@ -4,10 +4,21 @@
 #include <cmath>
 #include <utility>
 
+#include "grainlaw/dem/snapshot_resume.hpp"
+
 namespace grainlaw::dem {
 
 Recorder::Recorder(const Scene& scene, std::filesystem::path dir, double nu_start)
     : dir_(std::move(dir)), nu_start_(nu_start), rows_(scene.material, scene.legs(nu_start), nu_start) {}
+
+Recorder::Recorder(const Scene& scene, std::filesystem::path dir, double nu_start, ArchiveReader& archive)
+    : Recorder(scene, std::move(dir), nu_start) {
+  keep(*this, archive);
+  if (frames_ == 0)
+    drop_snapshots(snapshot_file());
+  else
+    snapshots_ = std::make_unique<SnapshotWriter>(resume_snapshots(snapshot_file(), frames_));
+}
 
 void Recorder::begin_path(const Dynamics& dynamics) {
   path_begin_ = dynamics.time();
@@ -41,16 +52,22 @@ void Recorder::leave(const Dynamics& dynamics, const Stage& stage) {
   if (next_snapshot_ != stage.snapshots.end()) take_snapshot(dynamics, stage, 1);
 }
 
+void Recorder::flush() const {
+  if (snapshots_) bring_to_disk(snapshot_file());
+  if (begun()) record().write_csv(dir_ / rows_file);
+}
+
 void Recorder::write_row(const Dynamics& dynamics, const Stage& stage, double progress) {
   rows_.append(dynamics.measure(), stage.segment.value(), progress, dynamics.time() - path_begin_);
 }
 
 void Recorder::take_snapshot(const Dynamics& dynamics, const Stage& stage, double progress) {
   const State state = dynamics.state();
-  if (!snapshots_) snapshots_ = std::make_unique<SnapshotWriter>(dir_ / "snapshots.h5", state.radius);
+  if (!snapshots_) snapshots_ = std::make_unique<SnapshotWriter>(snapshot_file(), state.radius);
   const std::size_t segment = stage.segment.value();
   const double nu = state.volume_fraction();
   snapshots_->append(state, {nu, std::log(nu / nu_start_), rows_.eps_dev(segment, progress), segment});
+  ++frames_;
 }
 
 }  // namespace grainlaw::dem

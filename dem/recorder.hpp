@@ -1,11 +1,13 @@
 // Writes down what a test measures: the rows of its record, and its snapshots.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "grainlaw/dem/archive.hpp"
 #include "grainlaw/dem/dynamics.hpp"
 #include "grainlaw/dem/row_writer.hpp"
 #include "grainlaw/dem/scene.hpp"
@@ -17,7 +19,12 @@ namespace grainlaw::dem {
 /// Looks at the grains and never changes them.
 class Recorder {
  public:
+  /// The rows so far, while the test runs.
+  static constexpr auto rows_file = "rows.csv";
+
   Recorder(const Scene& scene, std::filesystem::path dir, double nu_start);
+  /// As it was when it was kept; snapshots taken since then are dropped.
+  Recorder(const Scene& scene, std::filesystem::path dir, double nu_start, ArchiveReader& archive);
 
   /// The first row: the start of the path.
   void begin_path(const Dynamics& dynamics);
@@ -28,10 +35,18 @@ class Recorder {
   /// What is left, where a relaxation ended early.
   void leave(const Dynamics& dynamics, const Stage& stage);
 
+  /// Brings all snapshots to the disk, and the rows so far into rows.csv.
+  void flush() const;
   const Record& record() const { return rows_.record(); }
   std::vector<std::string> warnings() const { return rows_.warnings(); }
 
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.path_begin_, self.rows_, self.frames_);
+  }
+
  private:
+  std::filesystem::path snapshot_file() const { return dir_ / "snapshots.h5"; }
   using Steps = std::vector<std::uint64_t>;
   void write_row(const Dynamics& dynamics, const Stage& stage, double progress);
   void take_snapshot(const Dynamics& dynamics, const Stage& stage, double progress);
@@ -41,6 +56,7 @@ class Recorder {
   double path_begin_ = 0;  ///< us
   RowWriter rows_;
   std::unique_ptr<SnapshotWriter> snapshots_;
+  std::uint64_t frames_ = 0;
   Steps::const_iterator next_row_, next_snapshot_;  ///< of the stage it is in
 };
 

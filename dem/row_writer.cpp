@@ -90,6 +90,21 @@ void RowWriter::append(const Measurement& m, std::size_t segment, double progres
   }
 }
 
+std::vector<std::vector<double>> RowWriter::columns() const {
+  std::vector<std::vector<double>> columns;
+  for (const auto& name : record_.columns()) columns.push_back(record_[name]);
+  return columns;
+}
+
+void RowWriter::set_columns(const std::vector<std::vector<double>>& columns) {
+  record_ = Record(record_.columns());
+  for (std::size_t row = 0; row < columns.at(0).size(); ++row) {
+    std::vector<double> values;
+    for (const auto& column : columns) values.push_back(column.at(row));
+    record_.append(values);
+  }
+}
+
 std::vector<std::string> RowWriter::warnings() const {
   std::vector<std::string> list;
   const std::string rows = " of " + std::to_string(bearing_) + " load-bearing rows";

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "grainlaw/dem/measure.hpp"
@@ -29,7 +30,17 @@ class RowWriter {
   /// four contacts; below jamming the ratio says nothing), and on crystallisation where w < 1.2.
   std::vector<std::string> warnings() const;
 
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    std::vector<std::vector<double>> columns = self.columns();
+    archive(columns, self.bearing_, self.restless_, self.violent_, self.worst_ratio_, self.worst_nu_);
+    if constexpr (!std::is_const_v<Self>) self.set_columns(columns);
+  }
+
  private:
+  std::vector<std::vector<double>> columns() const;
+  void set_columns(const std::vector<std::vector<double>>& columns);
+
   Material material_;
   std::vector<Leg> legs_;
   SignConvention sign_;

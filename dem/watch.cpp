@@ -14,17 +14,22 @@ Watch::Watch(const RunHooks& hooks, std::size_t grains)
 void Watch::enter(const std::string& stage, std::uint64_t steps, std::uint64_t taken) {
   stage_ = stage;
   stage_end_ = done_ - taken + steps;
-  report();
+  look();
 }
 
 bool Watch::step() {
   ++taken_;
   if (++done_ % interval_ != 0) return true;
-  report();
+  look();
   return !stopped();
 }
 
-void Watch::report() const {
+void Watch::look() {
+  const Clock::time_point now = Clock::now();
+  if (std::chrono::duration<double>(now - last_checkpoint_).count() >= hooks_.checkpoint_every) {
+    checkpoint_due_ = true;
+    last_checkpoint_ = now;
+  }
   if (hooks_.progress && planned_ > 0)
     hooks_.progress(std::min(1.0, static_cast<double>(done_) / static_cast<double>(planned_)), stage_);
 }

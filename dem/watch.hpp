@@ -2,20 +2,23 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 
 namespace grainlaw::dem {
 
 struct RunHooks {
   /// Called some times a second with the share of all planned steps that is done, in [0, 1], and what is
-  /// going on
-  /// ("compress the gas", "d2 (2 of 3)"). Relaxations may end early, so the share can jump ahead; it never
-  /// falls.
+  /// going on ("compress the gas", "d2 (2 of 3)"). Relaxations may end early, so the share can jump ahead; it
+  /// never falls.
   std::function<void(double fraction_done, const std::string& stage)> progress;
   /// When it turns true the test stops within some 10 ms.
   const std::atomic<bool>* stop = nullptr;
+  /// Seconds from one checkpoint to the next; 0: one at every look, some ten milliseconds apart.
+  double checkpoint_every = 60;
 };
 
 class Watch {
@@ -28,18 +31,28 @@ class Watch {
   void enter(const std::string& stage, std::uint64_t steps, std::uint64_t taken);
   /// After each step; false where the run was told to stop.
   bool step();
+  /// Whether it is time for a checkpoint; said once.
+  bool checkpoint_due() { return std::exchange(checkpoint_due_, false); }
   /// The stage is over, perhaps before its planned end.
   void leave() { done_ = stage_end_; }
   bool stopped() const { return hooks_.stop != nullptr && hooks_.stop->load(std::memory_order_relaxed); }
   std::uint64_t particle_steps() const { return taken_ * grains_; }
 
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.done_, self.taken_);
+  }
+
  private:
-  void report() const;
+  using Clock = std::chrono::steady_clock;
+  void look();
 
   const RunHooks& hooks_;
   std::uint64_t grains_, interval_;
   std::uint64_t planned_ = 0, done_ = 0, taken_ = 0, stage_end_ = 0;
   std::string stage_;
+  Clock::time_point last_checkpoint_ = Clock::now();
+  bool checkpoint_due_ = false;
 };
 
 }  // namespace grainlaw::dem

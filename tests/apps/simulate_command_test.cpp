@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <chrono>
+#include <thread>
+
+#include "grainlaw/dem/snapshot.hpp"
 #include "program.hpp"
 
 namespace grainlaw::apps {
@@ -38,13 +42,54 @@ TEST_F(Simulate, WritesARecord) {
                       {"out/x: is not empty, and nothing in it is overwritten"}));
 }
 
-TEST_F(Simulate, InterruptedItLeavesNothing) {
+TEST_F(Simulate, InterruptedItSaysHowToGoOn) {
   const auto running = start_long();
   running->send(SIGINT);
   const Outcome outcome = running->wait();
   EXPECT_EQ(outcome.status, 130);
-  EXPECT_EQ(outcome.err, "stopped; nothing was written\n");
-  EXPECT_THAT(listing("out"), testing::IsEmpty());
+  EXPECT_EQ(outcome.err, "stopped; go on with: grainlaw simulate long.json -o out/x --resume\n");
+  EXPECT_TRUE(fs::exists(folder / "out/x.part/checkpoint.bin"));
+  EXPECT_TRUE(refuses(run({"simulate", "long.json", "-o", "out/x"}),
+                      {"out/x: holds an interrupted test; go on with --resume, or remove ", "/out/x.part"}));
+  write("s.json", scene("200"));
+  EXPECT_TRUE(
+      refuses(run({"simulate", "s.json", "-o", "out/x", "--resume"}),
+              {"checkpoint.bin: scene: is of another scene than s.json (path.segments[0].duration: "}));
+  Running again(folder, {"simulate", "long.json", "-o", "out/x", "--resume"});
+  again.send(SIGTERM);
+  EXPECT_EQ(again.wait().status, 130);
+}
+
+TEST_F(Simulate, KilledAtAnyMomentItGoesOnBitForBit) {
+  write("s.json",
+        R"({"preparation": {"count": 64, "rate": 1e-3, "relax": {"tolerance": 1e-3, "duration": 20}},
+    "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.7}, "duration": 4000}]},
+    "measure": {"rows": 10, "time_step": 0.2, "time_step_gas": 0.1,
+      "snapshots": [{"segment": 0, "nu": 0.65}, {"segment": 0}]}})");
+  ASSERT_EQ(run({"simulate", "s.json", "-o", "whole"}).status, 0);
+  // Some ten checkpoints in each of these ms, so that some of the kills hit one being written.
+  int killed = 0;
+  for (const int moment : {23, 41, 17, 35, 29, 53, 19, 47}) {
+    if (fs::exists(folder / "x")) break;
+    Arguments arguments{"simulate", "s.json", "-o", "x", "--checkpoint", "0"};
+    if (fs::exists(folder / "x.part")) arguments.push_back("--resume");
+    Running running(folder, arguments);
+    std::this_thread::sleep_for(std::chrono::milliseconds(moment));
+    running.send(SIGKILL);
+    killed += running.wait().status == 128 + SIGKILL ? 1 : 0;
+  }
+  EXPECT_GT(killed, 1);
+  if (!fs::exists(folder / "x")) {
+    const Outcome outcome = run({"simulate", "s.json", "-o", "x", "--resume"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  EXPECT_EQ(read("x/record.csv"), read("whole/record.csv"));
+  EXPECT_EQ(listing("x"), listing("whole"));
+  const auto frame = [&](const std::string& name) {
+    return dem::read_frame(folder / name / "snapshots.h5", {});
+  };
+  EXPECT_EQ(dem::list_frames(folder / "x/snapshots.h5"), dem::list_frames(folder / "whole/snapshots.h5"));
+  EXPECT_EQ(frame("x"), frame("whole"));
 }
 
 TEST_F(Simulate, WhatAKilledRunLeftIsCleared) {
@@ -55,6 +100,38 @@ TEST_F(Simulate, WhatAKilledRunLeftIsCleared) {
   write("s.json", scene("200"));
   EXPECT_EQ(run({"simulate", "s.json", "-o", "out/x"}).status, 0);
   EXPECT_THAT(listing("out"), ElementsAre("x", "x/provenance.json", "x/record.csv", "x/scene.json"));
+}
+
+TEST_F(Simulate, AFullDiskKeepsTheLastCheckpoint) {
+  const auto running = start_long();
+  running->send(SIGINT);
+  running->wait();
+  const std::string before = read("out/x.part/checkpoint.bin");
+  const Outcome full =
+      run({"simulate", "long.json", "-o", "out/x", "--checkpoint", "0", "--resume"}, {"", 4000});
+  EXPECT_EQ(full.status, 2);
+  EXPECT_THAT(full.err, HasSubstr("cannot be written: File too large"));
+  EXPECT_EQ(read("out/x.part/checkpoint.bin"), before);
+  // Without one there is nothing to keep.
+  write("s.json", scene("200"));
+  EXPECT_EQ(run({"simulate", "s.json", "-o", "y", "--checkpoint", "0"}, {"", 4000}).status, 2);
+  EXPECT_THAT(listing("y.part"), testing::IsEmpty());
+}
+
+TEST_F(Simulate, RefusesOptionsThatMakeNoSense) {
+  write("s.json", scene("200"));
+  EXPECT_TRUE(refuses(run({"simulate", "s.json", "-o", "x", "--simd", "mmx"}),
+                      {"--simd: must be one that this machine can run (", "baseline), got \"mmx\""}));
+  EXPECT_TRUE(refuses(run({"simulate", "s.json", "-o", "x", "--checkpoint", "-1"}),
+                      {"--checkpoint: must be a number", "got -1"}));
+  EXPECT_TRUE(refuses(run({"simulate", "s.json", "-o", "x", "--resume"}),
+                      {"x: holds no interrupted test to go on with (no x.part beside it)"}));
+}
+
+TEST_F(Simulate, RunsOnTheInstructionSetThatIsAskedFor) {
+  write("s.json", scene("200"));
+  ASSERT_EQ(run({"simulate", "s.json", "-o", "x", "--simd", "baseline"}).status, 0);
+  EXPECT_THAT(read("x/provenance.json"), HasSubstr("\"simd\": \"baseline\""));
 }
 
 TEST_F(Simulate, TwoIntoOneFolderAreRefused) {

@@ -122,6 +122,54 @@ TEST_F(RunCampaign, AFailureStopsOnlyThoseThatStartFromIt) {
   EXPECT_FALSE(fs::exists(dir / "failures.json"));
 }
 
+TEST_F(RunCampaign, GoesOnInsideAnInterruptedTest) {
+  campaign = campaign_of(R"({"name": "c", "seeds": [1],
+    "preparation": {"count": 64, "rate": 1e-3, "relax": {"tolerance": 1e-3, "duration": 20}},
+    "measure": {"rows": 10, "time_step": 0.2, "time_step_gas": 0.1},
+    "tests": [{"name": "iso", "role": "fit", "path": {"segments": [
+      {"mode": "iso", "controls": {"nu": 0.7}, "duration": 2000}]}}]})");
+  std::atomic<bool> stop{false};
+  std::vector<double> shares;
+  auto o = options();
+  o.workers = 1;
+  o.hooks.stop = &stop;
+  o.run_test = [&](const dem::Scene& scene, const fs::path& part, const dem::RunHooks& hooks) {
+    dem::RunHooks own = hooks;
+    own.progress = [&](double share, const std::string&) {
+      shares.push_back(share);
+      if (share < 0.5 || stop) return;
+      stop = true;
+      while (!hooks.stop->load()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+    return dem::run_element_test(scene, part, own);
+  };
+  EXPECT_TRUE(run_campaign(campaign, open(), o).stopped);
+  EXPECT_TRUE(fs::exists(dir / "records/iso-s1.part/checkpoint.bin"));
+  EXPECT_LT(shares.front(), 0.1);
+  shares.clear();
+  o.hooks.stop = nullptr;
+  EXPECT_EQ(run_campaign(campaign, open(CampaignFolder::Use::resume), o).finished, 1u);
+  ASSERT_FALSE(shares.empty());
+  EXPECT_GE(shares.front(), 0.5);
+  EXPECT_FALSE(fs::exists(dir / "records/iso-s1.part"));
+  dem::run_element_test(dem::Scene::load(dir / "records/iso-s1/scene.json"), dir / "whole");
+  EXPECT_EQ(read_file(dir / "records/iso-s1/record.csv"), read_file(dir / "whole/record.csv"));
+}
+
+TEST_F(RunCampaign, ACheckpointThatIsSpoiltIsNamedBeforeAnythingRuns) {
+  open();
+  fs::create_directories(dir / "records/d2-0.7-s1.part");
+  write_file(dir / "records/d2-0.7-s1.part/checkpoint.bin", "rubble, but enough of it");
+  try {
+    run_campaign(campaign, open(CampaignFolder::Use::resume), options());
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("d2-0.7-s1.part/checkpoint.bin: is cut short or damaged"));
+    EXPECT_THAT(error.what(), HasSubstr("remove " + (dir / "records/d2-0.7-s1.part").string()));
+  }
+  EXPECT_TRUE(ran.empty());
+}
+
 TEST_F(RunCampaign, StopsWhenToldAndGoesOnLater) {
   std::atomic<bool> stop{false};
   auto o = options();
