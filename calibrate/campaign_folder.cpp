@@ -88,6 +88,4 @@ CampaignFolder::CampaignFolder(const Campaign& campaign, fs::path dir, Use use) 
   }
 }
 
-bool CampaignFolder::has_record(const std::string& name) const { return fs::exists(record(name)); }
-
 }  // namespace grainlaw::calibrate

@@ -8,6 +8,7 @@
 
 #include "grainlaw/calibrate/campaign.hpp"
 #include "grainlaw/calibrate/lock_file.hpp"
+#include "grainlaw/calibrate/record_folder.hpp"
 
 namespace grainlaw::calibrate {
 
@@ -21,11 +22,7 @@ class CampaignFolder {
   CampaignFolder(const Campaign& campaign, std::filesystem::path dir, Use use);
 
   const std::filesystem::path& dir() const { return dir_; }
-  /// records/NAME, and records/NAME.part while it is being made.
-  std::filesystem::path record(const std::string& name) const { return dir_ / "records" / name; }
-  std::filesystem::path part(const std::string& name) const { return dir_ / "records" / (name + ".part"); }
-  /// Whether there is a directory of that record; see check_kept_record() for what is in it.
-  bool has_record(const std::string& name) const;
+  RecordFolder records() const { return {dir_}; }
 
  private:
   std::filesystem::path dir_;

@@ -53,11 +53,10 @@ struct Ending {
 
 class Runner {
  public:
-  Runner(const Campaign& campaign, const CampaignFolder& folder, const RunOptions& options)
-      : campaign_(campaign),
-        folder_(folder),
+  Runner(std::vector<Job> jobs, RecordFolder folder, const RunOptions& options)
+      : folder_(std::move(folder)),
         options_(options),
-        jobs_(plan(campaign)),
+        jobs_(std::move(jobs)),
         schedule_(jobs_),
         pulses_(jobs_.size()) {}
 
@@ -76,8 +75,7 @@ class Runner {
   void write_failures() const;
   bool halted() const { return halt_.load(std::memory_order_relaxed); }
 
-  const Campaign& campaign_;
-  const CampaignFolder& folder_;
+  const RecordFolder folder_;
   const RunOptions& options_;
   const std::vector<Job> jobs_;
   CampaignResult result_;
@@ -287,7 +285,7 @@ CampaignProgress Runner::progress() const {
 }
 
 void Runner::write_failures() const {
-  const fs::path file = folder_.dir() / "failures.json";
+  const fs::path file = folder_.dir / "failures.json";
   if (result_.failed.empty()) {
     fs::remove(file);
     return;
@@ -302,7 +300,11 @@ void Runner::write_failures() const {
 
 CampaignResult run_campaign(const Campaign& campaign, const CampaignFolder& folder,
                             const RunOptions& options) {
-  return Runner(campaign, folder, options).run();
+  return run_jobs(plan(campaign), folder.records(), options);
+}
+
+CampaignResult run_jobs(std::vector<Job> jobs, const RecordFolder& folder, const RunOptions& options) {
+  return Runner(std::move(jobs), folder, options).run();
 }
 
 }  // namespace grainlaw::calibrate

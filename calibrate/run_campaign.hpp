@@ -68,4 +68,8 @@ struct CampaignResult {
 CampaignResult run_campaign(const Campaign& campaign, const CampaignFolder& folder,
                             const RunOptions& options);
 
+/// The same for runs that were planned elsewhere; `folder.dir` has a directory `records`, and whoever calls
+/// holds it.
+CampaignResult run_jobs(std::vector<Job> jobs, const RecordFolder& folder, const RunOptions& options);
+
 }  // namespace grainlaw::calibrate

@@ -63,6 +63,21 @@ Axis make_axis(std::array<double, 2> range, int most, double unit, std::size_t l
   return axis;
 }
 
+Axis make_log_axis(std::array<double, 2> range, int most) {
+  Axis axis{range[0], range[1], {}, 0};
+  const int first = static_cast<int>(std::ceil(axis.low)), last = static_cast<int>(std::floor(axis.high));
+  if (last <= first) {  // not two decades in it: widened to the next ones
+    axis.low = std::floor(axis.low);
+    axis.high = std::ceil(axis.high) > axis.low ? std::ceil(axis.high) : axis.low + 1;
+  }
+  const int low = static_cast<int>(std::ceil(axis.low)), high = static_cast<int>(std::floor(axis.high));
+  const int every = std::max(1, (high - low + most - 1) / std::max(1, most));
+  for (int decade = low; decade <= high; decade += every)
+    axis.tics.push_back({static_cast<double>(decade), "10^{" + std::string(decade < 0 ? "−" : "") +
+                                                          std::to_string(std::abs(decade)) + "}"});
+  return axis;
+}
+
 std::array<double, 2> padded_range(const std::vector<double>& values) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const double value : values) {

@@ -22,6 +22,10 @@ struct Axis {
 /// data times `unit`.
 Axis make_axis(std::array<double, 2> range, int most, double unit = 1, std::size_t least = 2);
 
+/// A logarithmic axis: range and places are common logarithms, labels powers of ten (enhanced text); decades
+/// are left out where there are more than `most`.
+Axis make_log_axis(std::array<double, 2> range, int most);
+
 /// The range of finite values, widened by a twentieth on each side; one value or none gets a range around it.
 std::array<double, 2> padded_range(const std::vector<double>& values);
 

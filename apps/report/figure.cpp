@@ -124,6 +124,18 @@ double label_width(const Axis& axis) {
   return tic_character * static_cast<double>(longest);
 }
 
+/// What is drawn where an axis is logarithmic: the logarithms. There are no bars on such an axis.
+Panel with_logarithms(Panel panel) {
+  const auto take = [](std::vector<double>& values) {
+    for (double& x : values) x = x > 0 ? std::log10(x) : std::nan("");
+  };
+  for (Series& series : panel.series) {
+    if (panel.log_x) take(series.x);
+    if (panel.log_y) take(series.y);
+  }
+  return panel;
+}
+
 /// Writes the script of one panel; text sits at positions of its own, so that gnuplot's guess of text widths
 /// cannot clip it.
 class PanelScript {
@@ -131,14 +143,18 @@ class PanelScript {
   PanelScript(const Figure& figure, const Panel& panel)
       : figure_(figure),
         panel_(panel),
-        x_(make_axis(range_of(panel, true), std::max(3, static_cast<int>(panel.area.width / 52)))),
-        y_(make_axis(range_of(panel, false), tics_over(panel.area.height), 1, least_tics)) {}
+        x_(axis_of(range_of(panel, true), panel.log_x, std::max(3, static_cast<int>(panel.area.width / 52)),
+                   2)),
+        y_(axis_of(range_of(panel, false), panel.log_y, tics_over(panel.area.height), least_tics)) {}
 
   std::string text(const std::string& first_block) const {
     return margins() + axes() + labels() + plot(first_block);
   }
 
  private:
+  static Axis axis_of(std::array<double, 2> range, bool logarithmic, int most, std::size_t least) {
+    return logarithmic ? make_log_axis(range, most) : make_axis(range, most, 1, least);
+  }
   double screen_x(double px) const { return px / figure_.width; }
   double screen_y(double px) const { return 1 - px / figure_.height; }
 
@@ -279,11 +295,12 @@ std::string script(const Figure& figure) {
   std::string panels;
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
     const std::string block = "d" + std::to_string(p) + "_";
-    for (std::size_t i = 0; i < figure.panels[p].series.size(); ++i) {
-      check(figure.panels[p].series[i]);
-      text += data_block(block + std::to_string(i), figure.panels[p].series[i]);
+    const Panel panel = with_logarithms(figure.panels[p]);
+    for (std::size_t i = 0; i < panel.series.size(); ++i) {
+      check(panel.series[i]);
+      text += data_block(block + std::to_string(i), panel.series[i]);
     }
-    panels += PanelScript(figure, figure.panels[p]).text(block);
+    panels += PanelScript(figure, panel).text(block);
   }
   return text + "set multiplot\n" + panels + "unset multiplot\n";
 }
@@ -291,7 +308,7 @@ std::string script(const Figure& figure) {
 Markup draw(const Figure& figure) {
   std::vector<std::string> labels;
   for (const Panel& panel : figure.panels) {
-    for (const Series& series : panel.series) {
+    for (const Series& series : with_logarithms(panel).series) {
       if (has_points(series)) labels.push_back(series.label);
     }
   }

@@ -38,6 +38,8 @@ struct Panel {
   std::string right_label{};
   bool x_numbers = true;   ///< false: axis shared with the panel below
   bool zero_line = false;  ///< draws y = 0
+  /// Logarithmic axes: values that have no logarithm are not drawn, ranges given are common logarithms.
+  bool log_x = false, log_y = false;
 };
 
 struct Figure {

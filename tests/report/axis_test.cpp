@@ -48,6 +48,17 @@ TEST(ReportAxis, LabelsNeverRepeatAndStayInside) {
   }
 }
 
+TEST(ReportAxis, LogarithmicTicsStandAtPowersOfTen) {
+  const Axis axis = make_log_axis({-2.2, 1.1}, 5);
+  EXPECT_EQ(labels(axis), (std::vector<std::string>{"10^{−2}", "10^{−1}", "10^{0}", "10^{1}"}));
+  EXPECT_EQ(axis.tics[0].at, -2);
+  EXPECT_LE(make_log_axis({0, 40}, 5).tics.size(), 6u);
+  const Axis within_a_decade = make_log_axis({0.2, 0.7}, 5);
+  EXPECT_EQ(labels(within_a_decade), (std::vector<std::string>{"10^{0}", "10^{1}"}));
+  EXPECT_EQ(within_a_decade.low, 0);
+  EXPECT_EQ(within_a_decade.high, 1);
+}
+
 TEST(ReportAxis, HasAtLeastThreeTicsWhereAsked) {
   EXPECT_EQ(make_axis({-0.02, 6.3}, 3).tics.size(), 2u);
   for (double high = 1; high < 10; high += 0.13) {

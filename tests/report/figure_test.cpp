@@ -54,6 +54,15 @@ TEST(ReportFigure, SaysSoWhereThereIsNothingToDraw) {
               HasSubstr("nothing to draw"));
 }
 
+TEST(ReportFigure, ALogarithmicAxisLeavesOutWhatHasNoLogarithm) {
+  Figure figure = figure_with({{"error", Draw::dots, "#0072b2", {10, 1000, 1e5, 1e6}, {1, 0.1, 0.01, 0}}});
+  figure.panels[0].log_x = figure.panels[0].log_y = true;
+  EXPECT_THAT(script(figure), HasSubstr("1 0\n3 -1\n5 -2\n"));
+  const auto html = draw(figure).str();
+  EXPECT_EQ(occurrences(html, "h0"), 3u);
+  EXPECT_TRUE(test::parse(html).problems.empty()) << test::parse(html).problems[0];
+}
+
 TEST(ReportFigure, LegendNamesEachLabelOnce) {
   const auto html = draw(figure_with({{"seed 1", Draw::dots, "black", {1}, {1}},
                                       {"seed 1", Draw::line, "black", {1, 2}, {1, 2}}}))

@@ -1,0 +1,173 @@
+#include "grainlaw/apps/bench_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "grainlaw/apps/report/figure.hpp"
+#include "grainlaw/apps/report/gnuplot.hpp"
+#include "grainlaw/apps/report/numbers.hpp"
+#include "grainlaw/apps/report/sections.hpp"
+#include "grainlaw/apps/report/style.hpp"
+#include "grainlaw/apps/report/symbols.hpp"
+#include "grainlaw/element/version.hpp"
+
+namespace grainlaw::apps {
+
+namespace {
+
+using namespace report;
+using calibrate::BenchError;
+using calibrate::BenchTest;
+using calibrate::Knob;
+
+constexpr double legend_height = 28;
+
+std::string label_of(Knob knob) {
+  switch (knob) {
+    case Knob::time_step:
+      return "time step";
+    case Knob::rate:
+      return "rate";
+    case Knob::gas_step:
+      return "time step of the gas";
+    case Knob::count:
+      return "number of grains";
+  }
+  return "";
+}
+
+/// "t_c/10", "× 0.3", "1000"
+std::string value_of(const BenchError& line) {
+  switch (line.knob) {
+    case Knob::time_step:
+    case Knob::gas_step:
+      return "t_c/" + number(line.value, 4);
+    case Knob::rate:
+      return "× " + number(line.value, 4);
+    case Knob::count:
+      return number(line.value, 7);
+  }
+  return "";
+}
+
+std::string test_name(BenchTest test) {
+  return test == BenchTest::preparation ? "preparation" : mode_name(name_of(test));
+}
+
+/// Error over cost of one knob, and beside it what chance alone would make.
+void add_curves(Panel& panel, const std::vector<BenchError>& errors, BenchTest test,
+                const std::string& quantity, Knob knob) {
+  const std::string colour = nth_colour(static_cast<std::size_t>(knob));
+  Series dots{label_of(knob), Draw::dots, colour, {}, {}}, line = dots;
+  Series band{label_of(knob) + ", chance alone", Draw::dashes, colour, {}, {}};
+  line.draw = Draw::line;
+  line.in_legend = false;
+  for (const BenchError& e : errors) {
+    if (e.finest || e.test != test || e.quantity != quantity || e.knob != knob) continue;
+    for (Series* series : {&dots, &line, &band}) series->x.push_back(e.particle_steps);
+    dots.y.push_back(e.comparison.error);
+    line.y.push_back(e.comparison.error);
+    band.y.push_back(e.comparison.band);
+  }
+  for (Series* series : {&line, &dots, &band}) panel.series.push_back(*series);
+}
+
+Figure figure_of(const calibrate::Bench& bench, const std::vector<BenchError>& errors) {
+  std::vector<std::pair<BenchTest, std::string>> panels;
+  for (const BenchError& e : errors)
+    if (const std::pair key{e.test, e.quantity}; std::find(panels.begin(), panels.end(), key) == panels.end())
+      panels.push_back(key);
+  Figure figure;
+  figure.name = "speed-against-error";
+  figure.alt = "Error relative to the finest setting over the cost of a run, one curve per knob";
+  figure.smallest_width = "640px";
+  const auto areas = grid(figure, panels.size(), 3, 190);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const auto& [test, quantity] = panels[i];
+    const Symbol* symbol = find_symbol(quantity);
+    Panel panel{areas[i],
+                enhanced(test_name(test)) + ": " + (symbol ? std::string(symbol->plot) : quantity),
+                "particle-steps of a run",
+                i % 3 == 0 ? "relative error" : "",
+                {},
+                {},
+                {}};
+    panel.log_x = panel.log_y = true;
+    for (const Knob knob : calibrate::all_knobs()) add_curves(panel, errors, test, quantity, knob);
+    figure.panels.push_back(std::move(panel));
+  }
+  figure.caption =
+      "<b>Speed against error</b>: "_html +
+      text("N = " + std::to_string(bench.count) +
+           ". Dots: deviation of the mean over runs from that of the finest setting of the knob, root mean "
+           "square along the path over that of the quantity. Dashes: what it would be if chance (the chaos "
+           "of the flow, or of the packings where these differ) were the only difference.");
+  return figure;
+}
+
+Markup table_of(const std::vector<BenchError>& errors) {
+  Table table;
+  table.column("Test"_html).column("Quantity"_html).column("Setting"_html, Table::Kind::figures);
+  table.column("Particle-steps"_html, Table::Kind::figures).column("Core time"_html, Table::Kind::figures);
+  table.column("Error"_html, Table::Kind::figures).column("Chance alone"_html, Table::Kind::figures);
+  table.column("Offset"_html, Table::Kind::figures).column("Scatter of a run"_html, Table::Kind::figures);
+  std::optional<Knob> group;
+  for (const BenchError& e : errors) {
+    if (group != e.knob) table.group(text(label_of(e.knob)));
+    group = e.knob;
+    const auto share = [&](double x) { return text(e.finest || !std::isfinite(x) ? nothing : percent(x)); };
+    table.row({text(test_name(e.test)), symbol(e.quantity), text(value_of(e)),
+               text(number(e.particle_steps, 3)), text(std::isfinite(e.core_s) ? seconds(e.core_s) : nothing),
+               e.finest ? "finest"_html : share(e.comparison.error), share(e.comparison.band),
+               share(e.comparison.offset), text(std::isfinite(e.scatter) ? percent(e.scatter) : nothing)});
+  }
+  return table.html();
+}
+
+/// The legend of the picture, in one line above the panels.
+std::string svg_legend(const Figure& figure) {
+  std::string entries;
+  std::vector<std::string> seen;
+  double at = 72;
+  for (const Panel& panel : figure.panels)
+    for (const Series& series : panel.series) {
+      if (series.draw != Draw::dots || series.x.empty()) continue;
+      if (std::find(seen.begin(), seen.end(), series.label) != seen.end()) continue;
+      seen.push_back(series.label);
+      entries += "<circle cx=\"" + number(at, 6) + "\" cy=\"14\" r=\"4\" fill=\"" + series.colour +
+                 "\"/><text x=\"" + number(at + 10, 6) +
+                 "\" y=\"18\" font-family=\"sans-serif\" font-size=\"13\">" + text(series.label).str() +
+                 "</text>\n";
+      at += 40 + 7.5 * static_cast<double>(series.label.size());
+    }
+  return entries + "<text x=\"" + number(at, 6) +
+         "\" y=\"18\" font-family=\"sans-serif\" font-size=\"13\" fill=\"#555\">dashed: chance "
+         "alone</text>\n";
+}
+
+}  // namespace
+
+std::string bench_page(const calibrate::Bench& bench, const std::vector<BenchError>& errors,
+                       const std::string& advice) {
+  const std::string title = "Speed against error of the DEM, N = " + std::to_string(bench.count);
+  Markup body = element("h1", text(title)) + "\n"_html +
+                element("p", text("grainlaw " + build_name(version(), commit())), {{"class", "lead"}});
+  body += element("pre", text(advice)) + "\n"_html;
+  if (!errors.empty()) body += draw(figure_of(bench, errors)) + table_of(errors);
+  const Markup head = "<meta charset=\"utf-8\"/>\n"_html + element("title", text(title)) +
+                      element("style", Markup::trusted(style_sheet));
+  return "<!DOCTYPE html>\n" +
+         element("html", element("head", head) + element("body", body), {{"lang", "en"}}).str() + "\n";
+}
+
+std::string bench_picture(const calibrate::Bench& bench, const std::vector<BenchError>& errors) {
+  Figure figure = figure_of(bench, errors);
+  figure.height += legend_height;
+  for (Panel& panel : figure.panels) panel.area.top += legend_height;
+  std::string svg = run_gnuplot(script(figure));
+  const auto end = svg.rfind("</svg>");
+  return end == std::string::npos ? svg : svg.insert(end, svg_legend(figure));
+}
+
+}  // namespace grainlaw::apps

@@ -1,0 +1,18 @@
+// What `grainlaw bench dem` found, as a page and as one picture: cost against error.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grainlaw/calibrate/bench_errors.hpp"
+
+namespace grainlaw::apps {
+
+/// The page. `advice` is text, a line each.
+std::string bench_page(const calibrate::Bench& bench, const std::vector<calibrate::BenchError>& errors,
+                       const std::string& advice);
+
+/// The picture alone, an SVG file with its legend.
+std::string bench_picture(const calibrate::Bench& bench, const std::vector<calibrate::BenchError>& errors);
+
+}  // namespace grainlaw::apps

@@ -1,0 +1,240 @@
+#include "grainlaw/calibrate/bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include "grainlaw/dem/scene.hpp"
+
+namespace grainlaw::calibrate {
+
+namespace {
+
+constexpr double d2_rate = 2.839e-5, iso_rate = 5.0e-6;  // 1/us, the defaults of a path
+constexpr double compression_rate = 5e-5;                // of the packing, from 0.64 to nu_start
+constexpr std::int64_t fewest_packings = 3;              // where packings are compared
+constexpr double relaxation_share = 0.3;                 // of its longest duration that a relaxation takes
+
+std::string short_text(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", x);
+  return text;
+}
+
+std::string packing_name(const BenchSetting& setting, std::int64_t seed) {
+  return "packing-n" + std::to_string(setting.count) + "-gas" + std::to_string(setting.gas_steps) + "-s" +
+         std::to_string(seed);
+}
+
+std::string run_name(BenchTest test, const BenchSetting& setting, std::int64_t seed, std::int64_t twin) {
+  if (test == BenchTest::preparation) return packing_name(setting, seed);
+  return name_of(test) + "-n" + std::to_string(setting.count) + "-step" + std::to_string(setting.steps) +
+         "-rate" + short_text(setting.rate) + "-s" + std::to_string(seed) + "-t" + std::to_string(twin);
+}
+
+/// The values of a knob, the finest last.
+std::vector<double> values_of(Knob knob, std::int64_t count) {
+  const auto n = static_cast<double>(count);
+  switch (knob) {
+    case Knob::time_step:
+      return {5, 10, 20, 50, 200};
+    case Knob::rate:
+      return {30, 10, 3, 1, 0.3, 0.1};
+    case Knob::gas_step:
+      return {5, 10, 20, 50, 100};
+    case Knob::count:
+      return {std::floor(n / 4), std::floor(n / 2), n, 2 * n, 4 * n};
+  }
+  return {};
+}
+
+BenchSetting setting_of(Knob knob, double value, std::int64_t count) {
+  BenchSetting setting;
+  setting.count = count;
+  switch (knob) {
+    case Knob::time_step:
+      setting.steps = static_cast<int>(value);
+      break;
+    case Knob::rate:
+      setting.rate = value;
+      break;
+    case Knob::gas_step:
+      setting.gas_steps = static_cast<int>(value);
+      break;
+    case Knob::count:
+      setting.count = static_cast<std::int64_t>(value);
+      break;
+  }
+  return setting;
+}
+
+/// Whether a knob changes the packing, so that runs cannot start from the same one.
+bool compares_packings(Knob knob) { return knob == Knob::gas_step || knob == Knob::count; }
+
+std::vector<std::vector<std::string>> records_of(const Bench& bench, Knob knob, BenchTest test,
+                                                 const BenchSetting& setting) {
+  std::vector<std::vector<std::string>> groups;
+  if (compares_packings(knob)) {
+    groups.emplace_back();
+    for (std::int64_t seed = 1; seed <= std::max(bench.seeds, fewest_packings); ++seed)
+      groups.back().push_back(run_name(test, setting, seed, 0));
+    return groups;
+  }
+  for (std::int64_t seed = 1; seed <= bench.seeds; ++seed) {
+    groups.emplace_back();
+    for (std::int64_t twin = 0; twin < bench.twins; ++twin)
+      groups.back().push_back(run_name(test, setting, seed, twin));
+  }
+  return groups;
+}
+
+Json measure_json(const BenchSetting& setting, Json snapshots) {
+  return {{"rows", Bench::rows},
+          {"snapshots", std::move(snapshots)},
+          {"time_step", 1.0 / setting.steps},
+          {"time_step_gas", 1.0 / setting.gas_steps}};
+}
+
+Json packing_scene(const BenchSetting& setting, std::int64_t seed) {
+  const Json path{{"segments",
+                   {{{"mode", "iso"}, {"controls", {{"nu", Bench::nu_start}}}, {"rate", compression_rate}},
+                    {{"mode", "relax"}}}}};
+  return {{"preparation", {{"count", setting.count}, {"seed", seed}}},
+          {"path", path},
+          {"measure", measure_json(setting, {{{"segment", 1}}})}};
+}
+
+Json test_scene(const Bench& bench, BenchTest test, const BenchSetting& setting, std::int64_t seed,
+                std::int64_t twin) {
+  const bool is_d2 = test == BenchTest::d2;
+  Json segment{{"mode", is_d2 ? "d2" : "iso"}};
+  segment["controls"] = is_d2 ? Json{{"eps_dev", bench.eps_dev}} : Json{{"nu", bench.nu_end}};
+  segment["rate"] = setting.rate * (is_d2 ? d2_rate : iso_rate);
+  const std::string snapshot =
+      "../" + packing_name(setting, seed) + "/" + (twin == 0 ? "snapshots.h5" : twin_file(twin));
+  return {{"preparation", {{"snapshot", snapshot}}},
+          {"path", {{"segments", Json::array({segment})}}},
+          {"measure", measure_json(setting, Json::array())}};
+}
+
+/// Grains times steps, preparation included.
+double estimate(const dem::Scene& scene, const BenchSetting& setting) {
+  const double contact = scene.material.contact_duration(scene.material.r_min());
+  const auto* packing = std::get_if<dem::NewPacking>(&scene.preparation);
+  double steps = 0;
+  for (const Leg& leg : scene.legs(packing != nullptr ? packing->nu : Bench::nu_start))
+    steps += leg.duration * (leg.mode == Mode::relax ? relaxation_share : 1.0) / scene.measure.time_step;
+  if (packing != nullptr)
+    steps += (std::log(packing->nu / packing->nu_gas) / 3 / packing->rate +
+              relaxation_share * packing->relax.duration) /
+             scene.measure.time_step_gas;
+  return steps / contact * static_cast<double>(setting.count);
+}
+
+/// Adds runs, each once, after the packing they start from.
+class JobList {
+ public:
+  explicit JobList(const Bench& bench) : bench_(bench) {}
+
+  void add(BenchTest test, const BenchSetting& setting, std::int64_t seed, std::int64_t twin) {
+    if (test == BenchTest::preparation) {
+      add(packing_name(setting, seed), packing_scene(setting, seed), setting, seed, std::nullopt);
+      return;
+    }
+    const std::size_t packing =
+        add(packing_name(setting, seed), packing_scene(setting, seed), setting, seed, std::nullopt);
+    add(run_name(test, setting, seed, twin), test_scene(bench_, test, setting, seed, twin), setting, seed,
+        packing);
+  }
+  std::vector<Job> take() { return std::move(jobs_); }
+
+ private:
+  std::size_t add(const std::string& name, const Json& json, const BenchSetting& setting, std::int64_t seed,
+                  std::optional<std::size_t> needs) {
+    const auto [known, is_new] = index_.try_emplace(name, jobs_.size());
+    if (!is_new) return known->second;
+    const dem::Scene scene = dem::Scene::read(Reader(json, name), "");
+    jobs_.push_back({name, 0, seed, needs, scene.to_json(), estimate(scene, setting)});
+    return known->second;
+  }
+
+  const Bench& bench_;
+  std::vector<Job> jobs_;
+  std::map<std::string, std::size_t> index_;
+};
+
+}  // namespace
+
+std::string name_of(Knob knob) {
+  switch (knob) {
+    case Knob::time_step:
+      return "time_step";
+    case Knob::rate:
+      return "rate";
+    case Knob::gas_step:
+      return "gas_step";
+    case Knob::count:
+      return "count";
+  }
+  return "";
+}
+
+const std::vector<Knob>& all_knobs() {
+  static const std::vector<Knob> list{Knob::time_step, Knob::rate, Knob::gas_step, Knob::count};
+  return list;
+}
+
+std::string name_of(BenchTest test) {
+  switch (test) {
+    case BenchTest::iso:
+      return "iso";
+    case BenchTest::d2:
+      return "d2";
+    case BenchTest::preparation:
+      return "preparation";
+  }
+  return "";
+}
+
+std::string twin_file(std::int64_t twin) { return "twin-" + std::to_string(twin) + ".h5"; }
+
+Json Bench::to_json() const {
+  Json names = Json::array();
+  for (const Knob knob : knobs) names.push_back(name_of(knob));
+  return {{"count", count},     {"seeds", seeds},   {"twins", twins},
+          {"eps_dev", eps_dev}, {"nu_end", nu_end}, {"knobs", names}};
+}
+
+std::vector<Sweep> sweeps(const Bench& bench) {
+  std::vector<Sweep> list;
+  for (const Knob knob : bench.knobs) {
+    const std::vector<BenchTest> tests = knob == Knob::gas_step ? std::vector{BenchTest::preparation}
+                                                                : std::vector{BenchTest::iso, BenchTest::d2};
+    for (const BenchTest test : tests) {
+      Sweep sweep{knob, test, {}};
+      for (const double value : values_of(knob, bench.count)) {
+        const BenchSetting setting = setting_of(knob, value, bench.count);
+        sweep.variants.push_back({knob, test, value, setting, records_of(bench, knob, test, setting)});
+      }
+      list.push_back(std::move(sweep));
+    }
+  }
+  return list;
+}
+
+std::vector<Job> plan(const Bench& bench) {
+  JobList jobs(bench);
+  for (const Sweep& sweep : sweeps(bench))
+    for (const Variant& variant : sweep.variants) {
+      const bool packings = compares_packings(sweep.knob);
+      const std::int64_t seeds = packings ? std::max(bench.seeds, fewest_packings) : bench.seeds;
+      for (std::int64_t seed = 1; seed <= seeds; ++seed)
+        for (std::int64_t twin = 0; twin < (packings ? 1 : bench.twins); ++twin)
+          jobs.add(sweep.test, variant.setting, seed, twin);
+    }
+  return jobs.take();
+}
+
+}  // namespace grainlaw::calibrate

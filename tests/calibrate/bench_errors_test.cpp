@@ -1,0 +1,149 @@
+// Errors of a bench against closed forms, and that chance alone stays within its band.
+#include "grainlaw/calibrate/bench_errors.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <random>
+
+#include "grainlaw/element/file.hpp"
+#include "grainlaw/element/record.hpp"
+
+namespace grainlaw::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(BenchErrors, CompareGivesDeviationAndOffset) {
+  const Groups reference{{{2, 4}}}, runs{{{2.6, 3.4}}};
+  const Comparison c = compare(runs, reference, {0, 0});
+  EXPECT_NEAR(c.error, std::sqrt((0.36 + 0.36) / (4 + 16)), 1e-12);
+  EXPECT_NEAR(c.offset, 0, 1e-12);
+  EXPECT_EQ(c.band, 0);
+  EXPECT_NEAR(compare({{{2.2, 4.4}}}, reference, {0, 0}).offset, 0.1, 1e-12);
+}
+
+TEST(BenchErrors, CompareTakesPackingsApart) {
+  // Packings differ by 10, the setting moves each by 1: the error is that of the setting.
+  const Groups reference{{{1, 1}, {3, 3}}, {{11, 11}, {13, 13}}};
+  const Groups runs{{{2, 2}, {4, 4}}, {{12, 12}, {14, 14}}};
+  const Series variance = pooled_variance({&reference, &runs});
+  EXPECT_EQ(variance, (Series{2, 2}));  // four pairs that are 2 apart
+  const Comparison c = compare(runs, reference, variance);
+  EXPECT_NEAR(c.error, 1.0 / 7, 1e-12);
+  EXPECT_NEAR(c.band, std::sqrt(2 * (0.25 + 0.25)) / 7, 1e-12);
+}
+
+TEST(BenchErrors, ARowWithoutValueIsLeftOut) {
+  const Comparison c = compare({{{2, std::nan("")}}}, {{{1, std::nan("")}}}, {0, std::nan("")});
+  EXPECT_NEAR(c.error, 1, 1e-12);
+}
+
+TEST(BenchErrors, OneRunPerGroupSaysNothingOfChance) {
+  const Groups one{{{1, 2}}};
+  EXPECT_TRUE(std::isnan(pooled_variance({&one})[0]));
+}
+
+/// Runs that differ by chance alone.
+Groups noise(std::mt19937& generator, std::size_t groups, std::size_t runs) {
+  std::normal_distribution<double> normal(1, 0.1);
+  Groups all(groups, std::vector<Series>(runs, Series(400)));
+  for (auto& group : all)
+    for (Series& run : group)
+      for (double& x : run) x = normal(generator);
+  return all;
+}
+
+TEST(BenchErrors, ChanceAloneMakesAnErrorAsLargeAsTheBand) {
+  std::mt19937 generator(1);
+  const Groups a = noise(generator, 2, 3), b = noise(generator, 2, 3);
+  const Comparison c = compare(a, b, pooled_variance({&a, &b}));
+  // 400 rows: the ratio scatters by 1/sqrt(800) from the error and by less from the band.
+  EXPECT_NEAR(c.error / c.band, 1, 0.15);
+  EXPECT_NEAR(c.band, 0.1 * std::sqrt(1.0 / 6 + 1.0 / 6), 0.005);
+}
+
+BenchError line(Knob knob, double value, double cost, double error, bool finest = false) {
+  BenchError e{};
+  e.knob = knob;
+  e.value = value;
+  e.particle_steps = cost;
+  e.quantity = "P";
+  e.comparison = {error, 0.01, 0};
+  e.finest = finest;
+  return e;
+}
+
+TEST(BenchErrors, RecommendsTheCheapestWithinTwoBands) {
+  const auto best = recommend({line(Knob::time_step, 5, 1, 0.03), line(Knob::time_step, 10, 2, 0.019),
+                               line(Knob::time_step, 20, 4, 0.01), line(Knob::time_step, 200, 40, 0, true)});
+  ASSERT_EQ(best.size(), 1u);
+  EXPECT_EQ(best[0].value, 10);
+  EXPECT_NEAR(best[0].worst, 1.9, 1e-12);
+}
+
+TEST(BenchErrors, OneBadQuantityIsEnough) {
+  auto bad = line(Knob::rate, 3, 1, 0.05);
+  bad.quantity = "F_dev";
+  const auto best = recommend({line(Knob::rate, 3, 1, 0.001), bad, line(Knob::rate, 1, 3, 0.002),
+                               line(Knob::rate, 0.1, 30, 0, true)});
+  ASSERT_EQ(best.size(), 1u);
+  EXPECT_EQ(best[0].value, 1);
+}
+
+class BenchFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder.dir = fs::temp_directory_path() / ("grainlaw-bench-errors-" + std::to_string(::getpid()));
+    fs::remove_all(folder.dir);
+  }
+  void TearDown() override { fs::remove_all(folder.dir); }
+
+  /// A record whose quantities are all `value`.
+  void write(const std::string& name, double value) const {
+    fs::create_directories(folder.record(name));
+    Record record(record_columns());
+    for (int i = 0; i <= Bench::rows; ++i) {
+      std::vector<double> row(record_columns().size(), value);
+      row[3] = 0.75;  // nu
+      record.append(row);
+    }
+    record.write_csv(folder.record(name) / "record.csv");
+    write_file(folder.record(name) / "provenance.json", Json{{"particle_steps", 1000}}.dump());
+    write_file(folder.record(name) / core_time_file, Json{{"core_s", 0.5}}.dump());
+  }
+
+  RecordFolder folder;
+};
+
+TEST_F(BenchFolder, ReadsWhatIsThereAndLeavesOutWhatIsNot) {
+  Bench bench;
+  bench.knobs = {Knob::time_step};
+  const Sweep d2 = sweeps(bench).back();
+  ASSERT_EQ(d2.test, BenchTest::d2);
+  for (std::size_t i = 1; i < d2.variants.size(); ++i)  // the first is not there
+    for (const auto& group : d2.variants[i].records)
+      for (const auto& name : group) write(name, i == 1 ? 0.55 : 0.5);
+  const auto errors = bench_errors(bench, folder);
+  ASSERT_EQ(errors.size(), 4 * (d2.variants.size() - 1));  // four quantities; nothing of the ISO test
+  EXPECT_EQ(errors[0].value, d2.variants[1].value);
+  EXPECT_NEAR(errors[0].comparison.error, 0.1, 1e-9);
+  EXPECT_EQ(errors[0].runs, 4u);
+  EXPECT_EQ(errors[0].particle_steps, 1000);
+  EXPECT_EQ(errors[0].core_s, 0.5);
+  EXPECT_NEAR(errors[1].comparison.error, 0, 1e-9);
+  const std::string csv = to_csv(errors);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + static_cast<long>(errors.size()));
+}
+
+TEST_F(BenchFolder, WithoutTheFinestThereIsNoError) {
+  Bench bench;
+  bench.knobs = {Knob::time_step};
+  for (const auto& group : sweeps(bench).back().variants.front().records)
+    for (const auto& name : group) write(name, 0.5);
+  EXPECT_TRUE(bench_errors(bench, folder).empty());
+}
+
+}  // namespace
+}  // namespace grainlaw::calibrate
