@@ -118,14 +118,14 @@ Vec3 Cell::nearest_tilted(const Vec3& d) const {
   return nearest;
 }
 
-Mat3 Cell::deformation_from(const Cell& before) const {
-  if (!tilted_ && !before.tilted_)
-    return Mat3::diagonal({edges_(0, 0) / before.edges_(0, 0), edges_(1, 1) / before.edges_(1, 1),
-                           edges_(2, 2) / before.edges_(2, 2)});
-  return edges_ * inverse(before.edges_);
+Mat3 Cell::deformation_from(const Mat3& before) const {
+  if (!tilted_ && before.is_diagonal())
+    return Mat3::diagonal(
+        {edges_(0, 0) / before(0, 0), edges_(1, 1) / before(1, 1), edges_(2, 2) / before(2, 2)});
+  return edges_ * inverse(before);
 }
 
-Sym6 Cell::strain_from(const Cell& before) const {
+Sym6 Cell::strain_from(const Mat3& before) const {
   const Mat3 f = deformation_from(before);
   if (f.is_diagonal()) return {-std::log(f(0, 0)), -std::log(f(1, 1)), -std::log(f(2, 2)), 0, 0, 0};
   const Mat3 h = apply(spectrum(f * transposed(f)), [](double square) { return -0.5 * std::log(square); });

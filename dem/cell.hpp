@@ -75,11 +75,11 @@ class Cell {
     return d;
   }
 
-  /// F of the deformation in between: H = F H_before.
-  Mat3 deformation_from(const Cell& before) const;
-  /// Logarithmic (Hencky) strain since `before`, compression positive: -ln V of F = V R, along the present
+  /// F of the deformation since the edges were these: H = F H_before.
+  Mat3 deformation_from(const Mat3& edges_before) const;
+  /// Logarithmic (Hencky) strain since then, compression positive: -ln V of F = V R, along the present
   /// axes. Its trace is ln(V_before/V), with V the volume.
-  Sym6 strain_from(const Cell& before) const;
+  Sym6 strain_from(const Mat3& edges_before) const;
   /// Velocity of the affine motion at x (or of a separation x), mm/us.
   Vec3 affine_velocity(const Vec3& x) const {
     if (tilted_) return gradient_ * x;
@@ -95,7 +95,10 @@ class Cell {
   /// The translations of the 27 images, mm.
   std::array<Quad, 27> shifts() const;
 
-  bool operator==(const Cell&) const = default;
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.edges_, self.gradient_, self.tilted_, self.basis_, self.to_fractions_);
+  }
 
  private:
   Vec3 wrap_tilted(const Vec3& x) const;

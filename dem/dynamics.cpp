@@ -48,8 +48,8 @@ void Dynamics::start_flow(double dt, const Mat3& gradient) {
 
 void Dynamics::step(const Mat3& edges, const Mat3& gradient) {
   const Cell next = cell_.moved(edges, gradient);
-  const double excess = advance({dt_, next.deformation_from(cell_), cell_.gradient(), material_.gamma_b,
-                                 next.tilted() || cell_.tilted()},
+  const double excess = advance({dt_, next.deformation_from(cell_.edges()), cell_.gradient(),
+                                 material_.gamma_b, next.tilted() || cell_.tilted()},
                                 neighbours_.reach(next), grains_);
   if (!std::isfinite(excess))
     throw Error("the motion of the grains became unstable " + to_text(time_) +

@@ -26,6 +26,11 @@ class Mat3 {
   }
   constexpr bool operator==(const Mat3&) const = default;
 
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.rows_);
+  }
+
  private:
   std::array<Vec3, 3> rows_{};
 };

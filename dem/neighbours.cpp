@@ -28,7 +28,7 @@ double strayed(const Quad& x, const Quad& reference, const Mat3& deformation) {
 
 bool Neighbours::outdated(const Grains& grains, const Cell& cell) const {
   if (inner_reference_.size() != grains.count()) return true;
-  const Mat3 deformation = cell.deformation_from(inner_cell_);
+  const Mat3 deformation = cell.deformation_from(inner_cell_.edges());
   double excess = -1;
   for (std::size_t i = 0; i < grains.count(); ++i)
     excess =
@@ -37,7 +37,7 @@ bool Neighbours::outdated(const Grains& grains, const Cell& cell) const {
 }
 
 bool Neighbours::outdated(const Cell& cell, double excess) const {
-  return excess > 0 || least_stretch(cell.deformation_from(inner_cell_)) < 1 - box_budget;
+  return excess > 0 || least_stretch(cell.deformation_from(inner_cell_.edges())) < 1 - box_budget;
 }
 
 void Neighbours::update(Grains& grains, Cell& cell, double lookahead) {
@@ -65,7 +65,7 @@ void Neighbours::make_budgets(const Grains& grains, double lookahead) {
 /// the outer list was made, |w_i| + s_i/e_min + r_i (1/e_min - e) <= e skin/2.
 bool Neighbours::outer_covers(const Grains& grains, const Cell& cell) const {
   if (outer_reference_.size() != grains.count()) return false;
-  const Mat3 deformation = cell.deformation_from(outer_cell_);
+  const Mat3 deformation = cell.deformation_from(outer_cell_.edges());
   const double e = least_stretch(deformation), inflate = 1 / (1 - box_budget);
   for (std::size_t i = 0; i < grains.count(); ++i) {
     const double room = 0.5 * e * outer_skin_ - budget_[i] * inflate - grains.place[i].w * (inflate - e);

@@ -32,7 +32,7 @@ class Neighbours {
   /// The same, where `excess` is what advance() returned for reach(cell).
   bool outdated(const Cell& cell, double excess) const;
   ListReach reach(const Cell& cell) const {
-    return {inner_reference_.data(), cell.deformation_from(inner_cell_)};
+    return {inner_reference_.data(), cell.deformation_from(inner_cell_.edges())};
   }
 
   /// Renews the list; wraps and sorts the grains and reduces the box where the outer list must be renewed
