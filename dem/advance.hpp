@@ -9,23 +9,25 @@ namespace grainlaw::dem {
 /// dv/dt of a grain, mm/us^2 | 1/mass, of the fluctuation velocity (see Dynamics): from its contact force and
 /// the velocity that force was computed with. `last` is an earlier one of the same grain, for its mass.
 inline Quad acceleration(const Quad& force, const Quad& motion, const Quad& last, double gamma_b,
-                         const Vec3& rate) {
-  const double drag = gamma_b * last.w;
-  return {force.x * last.w - (drag + rate[0]) * motion.x, force.y * last.w - (drag + rate[1]) * motion.y,
-          force.z * last.w - (drag + rate[2]) * motion.z, last.w};
+                         const Mat3& gradient) {
+  Mat3 damping = gradient;
+  for (std::size_t c = 0; c < 3; ++c) damping(c, c) += gamma_b * last.w;
+  const Vec3 damped = damping * Vec3{motion.x, motion.y, motion.z};
+  return {force.x * last.w - damped[0], force.y * last.w - damped[1], force.z * last.w - damped[2], last.w};
 }
 
 struct Stride {
-  double dt;       ///< us
-  Vec3 stretch;    ///< edges of the box at the end of the step over those at its beginning
-  Vec3 rate;       ///< of the box at its beginning, 1/us
-  double gamma_b;  ///< ug/us
+  double dt;         ///< us
+  Mat3 deformation;  ///< F of the box during the step
+  Mat3 gradient;     ///< G of the box at its beginning, 1/us
+  double gamma_b;    ///< ug/us
+  bool tilted;       ///< false: nothing beside the diagonals, here and in the reach of the list
 };
 
 /// How far grains may stray before the list of pairs could miss one; see Neighbours.
 struct ListReach {
   const Quad* reference;  ///< X | s^2 for each grain
-  Vec3 stretch;           ///< E, of the box at the end of the step
+  Mat3 deformation;       ///< E, of the box since the list was made, at the end of the step
 };
 
 /// From the forces at time n: takes the velocity from n - 1/2 to n + 1/2, moves the grains with it and with

@@ -9,16 +9,17 @@ namespace {
 constexpr std::uint64_t relax_check_interval = 100;  // steps between two looks at the energies
 }
 
-Vec3 Drive::length(double t) const {
+Mat3 Drive::edges(double t) const {
   const double p = leg_.progress(t);
-  return {start_[0] * std::exp(-leg_.strain[0] * p), start_[1] * std::exp(-leg_.strain[1] * p),
-          start_[2] * std::exp(-leg_.strain[2] * p)};
+  return Mat3::diagonal(
+             {std::exp(-leg_.strain[0] * p), std::exp(-leg_.strain[1] * p), std::exp(-leg_.strain[2] * p)}) *
+         start_;
 }
 
-Vec3 Drive::rate(double t, double dt) const {
+Mat3 Drive::gradient(double t, double dt) const {
   const double from = std::max(t - 0.5 * dt, 0.0), to = std::min(t + 0.5 * dt, leg_.duration);
   const double speed = (leg_.progress(to) - leg_.progress(from)) / (to - from);
-  return {-leg_.strain[0] * speed, -leg_.strain[1] * speed, -leg_.strain[2] * speed};
+  return Mat3::diagonal({-leg_.strain[0] * speed, -leg_.strain[1] * speed, -leg_.strain[2] * speed});
 }
 
 StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_steps) {
@@ -31,13 +32,13 @@ StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_ste
 
 void follow(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
             const AfterStep& after_step) {
-  if (state.step == 0) state.start_length = dynamics.cell().length();
-  const Drive box(state.start_length, leg);
-  if (state.step == 0) dynamics.start(plan.dt, box.rate(0, plan.dt));
+  if (state.step == 0) state.start_edges = dynamics.cell().edges();
+  const Drive box(state.start_edges, leg);
+  if (state.step == 0) dynamics.start_flow(plan.dt, box.gradient(0, plan.dt));
   while (state.step < plan.steps) {
     const std::uint64_t n = ++state.step;
     const double t = n == plan.steps ? leg.duration : static_cast<double>(n) * plan.dt;
-    dynamics.step(box.length(t), box.rate(t, plan.dt));
+    dynamics.step(box.edges(t), box.gradient(t, plan.dt));
     if (!after_step(n)) return;
   }
 }

@@ -9,17 +9,17 @@
 
 namespace grainlaw::dem {
 
-/// The motion of the box along a leg: edges L(t) = L(0) exp(-strain progress(t)).
+/// The motion of the box along a leg: edges H(t) = exp(-strain progress(t)) H(0).
 class Drive {
  public:
-  Drive(const Vec3& start_length, const Leg& leg) : start_(start_length), leg_(leg) {}
-  /// Edges at time t of the leg, mm.
-  Vec3 length(double t) const;
-  /// d(ln L)/dt at time t, averaged over t - dt/2 ... t + dt/2 within the leg, 1/us.
-  Vec3 rate(double t, double dt) const;
+  Drive(const Mat3& start_edges, const Leg& leg) : start_(start_edges), leg_(leg) {}
+  /// H at time t of the leg, mm.
+  Mat3 edges(double t) const;
+  /// G at time t, averaged over t - dt/2 ... t + dt/2 within the leg, 1/us.
+  Mat3 gradient(double t, double dt) const;
 
  private:
-  Vec3 start_;
+  Mat3 start_;
   Leg leg_;
 };
 
@@ -35,7 +35,7 @@ StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_ste
 /// Whatever drives a leg keeps its state here, so that the leg can be left after any step and gone on with.
 struct LegState {
   std::uint64_t step = 0;       ///< steps taken; 0: the leg has not begun
-  Vec3 start_length{};          ///< edges of the box where it began, mm
+  Mat3 start_edges;             ///< H where it began, mm
   double kinetic_at_start = 0;  ///< for relax, ug mm^2/us^2
 
   template <class Self, class Archive>

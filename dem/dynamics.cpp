@@ -39,10 +39,10 @@ Dynamics::Dynamics(const Material& material, ArchiveReader& archive)
   neighbours_.rebuild(grains_);
 }
 
-void Dynamics::start(double dt, const Vec3& rate) {
+void Dynamics::start_flow(double dt, const Mat3& gradient) {
   grains_.motion = velocities();
   dt_ = dt;
-  cell_ = Cell(cell_.length(), rate);
+  cell_ = cell_.moved(cell_.edges(), gradient);
   if (neighbours_.outdated(grains_, cell_)) neighbours_.update(grains_, cell_, planned_steps * dt_);
   contact_forces(law_, neighbours_.pairs(), cell_, grains_);
   for (std::size_t i = 0; i < count(); ++i) {
@@ -52,9 +52,10 @@ void Dynamics::start(double dt, const Vec3& rate) {
   }
 }
 
-void Dynamics::step(const Vec3& length, const Vec3& rate) {
-  const Cell next(length, rate);
-  const double excess = advance({dt_, next.stretch_from(cell_.length()), cell_.rate(), material_.gamma_b},
+void Dynamics::step(const Mat3& edges, const Mat3& gradient) {
+  const Cell next = cell_.moved(edges, gradient);
+  const double excess = advance({dt_, next.deformation_from(cell_.edges()), cell_.gradient(),
+                                 material_.gamma_b, next.tilted() || cell_.tilted()},
                                 neighbours_.reach(next), grains_);
   if (!std::isfinite(excess))
     throw Error("the motion of the grains became unstable " + to_text(time_) +
@@ -68,7 +69,7 @@ void Dynamics::step(const Vec3& length, const Vec3& rate) {
 
 Quad Dynamics::acceleration(std::size_t i) const {
   return dem::acceleration(grains_.force[i], grains_.motion[i], grains_.acceleration[i], material_.gamma_b,
-                           cell_.rate());
+                           cell_.gradient());
 }
 
 std::vector<Quad> Dynamics::velocities() const {
@@ -97,7 +98,7 @@ Energies Dynamics::energies() const {
 
 State Dynamics::state() const {
   State state;
-  state.box = cell_.length();
+  state.box = cell_.edges();
   state.time_us = time_;
   state.step = steps_;
   state.position.resize(count());

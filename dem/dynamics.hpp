@@ -16,7 +16,8 @@
 
 namespace grainlaw::dem {
 
-/// The equations. With G = d(ln L)/dt of the box and v the FLUCTUATION velocity (true velocity minus G x),
+/// The equations. With H the edges of the box, G = dH/dt H^-1 its velocity gradient (orthorhombic: d(ln L)/dt
+/// per axis) and v the FLUCTUATION velocity (true velocity minus G x),
 ///
 ///   dx/dt = v + G x,   m dv/dt = sum of contact forces - gamma_b v - m G v.
 ///
@@ -41,13 +42,18 @@ class Dynamics {
     archive(self.grains_, self.cell_, self.neighbours_, self.dt_, self.time_, self.steps_);
   }
 
-  /// Must precede the first step, and steps with another dt (us). `rate` is d(ln L)/dt from now on.
-  void start(double dt, const Vec3& rate);
-  /// One step to a box of edges `length` (mm), which then deforms at `rate` (1/us). Throws Error if the
-  /// motion is no longer finite.
-  void step(const Vec3& length, const Vec3& rate);
+  /// Must precede the first step, and steps with another dt (us). G is diagonal from now on, `rate`: d(ln
+  /// L)/dt of an orthorhombic box.
+  void start(double dt, const Vec3& rate) { start_flow(dt, Mat3::diagonal(rate)); }
+  /// The same with any G, 1/us.
+  void start_flow(double dt, const Mat3& gradient);
+  /// One step to an orthorhombic box of edges `length` (mm), which then deforms at `rate` (1/us). Throws
+  /// Error if the motion is no longer finite.
+  void step(const Vec3& length, const Vec3& rate) { step(Mat3::diagonal(length), Mat3::diagonal(rate)); }
+  /// One step to a box of edges H (mm), which then deforms with G (1/us): H = F H_before, never flipped.
+  void step(const Mat3& edges, const Mat3& gradient);
   /// One step in a box at rest.
-  void step() { step(cell_.length(), {}); }
+  void step() { step(cell_.edges(), {}); }
 
   const Cell& cell() const { return cell_; }
   double dt() const { return dt_; }

@@ -23,16 +23,23 @@ constexpr std::size_t second = lanes - 4;  // from a grain to the one in the oth
 /// What the loops need beside the grains.
 struct Constants {
   LinearContact law;
-  Wide gx, gy, gz;
+  Wide gx, gy, gz;     // the velocity gradient's diagonal
+  Wide gyz, gxz, gxy;  // yz and zy together, ...: along the branch only the symmetric part acts
   Wide apart = wide_quad({1, 1, 1, -1});  // turns a difference of places into branch | r_i + r_j
 };
 
 /// Force over distance of as many pairs as there are lanes; zero where grains do not touch. Of a grain with
-/// itself, which fills up a list, it is finite and the branch zero.
+/// itself, which fills up a list, it is finite and the branch zero. Without `tilted` the velocity gradient
+/// has a diagonal only.
+template <bool tilted>
 HWY_INLINE Wide strength_of(const Constants& c, const Wide (&branch)[4], const Wide (&velocity)[4]) {
   Wide x, y, z, reach, u, v, w, unused;
   transpose(branch, x, y, z, reach);
   transpose(velocity, u, v, w, unused);
+  if constexpr (tilted) {
+    u = mul_add(c.gxy, y, mul_add(c.gxz, z, u));
+    v = mul_add(c.gyz, z, v);
+  }
   // Root and quotient do not wait for each other.
   const Wide squared = larger(wide(1e-60), mul_add(x, x, mul_add(y, y, z * z)));
   const Wide distance = root(squared), inverse = distance * (wide(1) / squared), overlap = reach - distance;
@@ -58,6 +65,7 @@ HWY_INLINE void act(Wide strength, const Wide (&branch)[4], Wide (&total)[4], co
 }
 
 /// Each group of grains stays in registers, places, velocities and forces, while it meets its partners.
+template <bool tilted>
 void add_forces_within(const Constants& constants, const GroupedPairs& list, Grains& grains) {
   const Quad* const place = grains.place.data();
   const Quad* const motion = grains.motion.data();
@@ -79,7 +87,7 @@ void add_forces_within(const Constants& constants, const GroupedPairs& list, Gra
           branch[k] = mul_sub_from(constants.apart, rows(place[j[k]], place[j[k + second]]), place_i[k]);
           velocity[k] = motion_i[k] - rows(motion[j[k]], motion[j[k + second]]);
         }
-        const Wide strength = strength_of(constants, branch, velocity);
+        const Wide strength = strength_of<tilted>(constants, branch, velocity);
         act<0>(strength, branch, total, j, force);
         act<1>(strength, branch, total, j, force);
         act<2>(strength, branch, total, j, force);
@@ -104,6 +112,7 @@ HWY_INLINE void act_on_both(Wide strength, const Wide (&branch)[4], const Crossi
   }
 }
 
+template <bool tilted>
 void add_forces_across(const Constants& constants, const CrossingPairs& list, const Quad* shifts,
                        Grains& grains) {
   const Quad* const place = grains.place.data();
@@ -118,7 +127,7 @@ void add_forces_across(const Constants& constants, const CrossingPairs& list, co
                   rows(shifts[a.image], shifts[b.image]);
       velocity[k] = rows(motion[a.i], motion[b.i]) - rows(motion[a.j], motion[b.j]);
     }
-    const Wide strength = strength_of(constants, branch, velocity);
+    const Wide strength = strength_of<tilted>(constants, branch, velocity);
     act_on_both<0>(strength, branch, pair, force);
     act_on_both<1>(strength, branch, pair, force);
     act_on_both<2>(strength, branch, pair, force);
@@ -126,11 +135,23 @@ void add_forces_across(const Constants& constants, const CrossingPairs& list, co
   }
 }
 
-void add_all_forces(const LinearContact& law, const Pairs& pairs, const Vec3& rate, const Quad* shifts,
+template <bool tilted>
+void add_to_both(const LinearContact& law, const Pairs& pairs, const Mat3& gradient, const Quad* shifts,
+                 Grains& grains) {
+  const auto both = [&](std::size_t a, std::size_t b) { return wide(gradient(a, b) + gradient(b, a)); };
+  const Constants constants{
+      law,       wide(gradient(0, 0)), wide(gradient(1, 1)), wide(gradient(2, 2)), both(1, 2), both(0, 2),
+      both(0, 1)};
+  add_forces_within<tilted>(constants, pairs.within, grains);
+  add_forces_across<tilted>(constants, pairs.crossing, shifts, grains);
+}
+
+void add_all_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, const Quad* shifts,
                     Grains& grains) {
-  const Constants constants{law, wide(rate[0]), wide(rate[1]), wide(rate[2])};
-  add_forces_within(constants, pairs.within, grains);
-  add_forces_across(constants, pairs.crossing, shifts, grains);
+  if (cell.tilted())
+    add_to_both<true>(law, pairs, cell.gradient(), shifts, grains);
+  else
+    add_to_both<false>(law, pairs, cell.gradient(), shifts, grains);
 }
 
 }  // namespace grainlaw::dem::HWY_NAMESPACE
@@ -144,7 +165,7 @@ HWY_EXPORT(add_all_forces);
 void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, Grains& grains) {
   const std::array<Quad, 27> shifts = cell.shifts();
   std::fill(grains.force.begin(), grains.force.end(), Quad{});
-  HWY_DYNAMIC_DISPATCH(add_all_forces)(law, pairs, cell.rate(), shifts.data(), grains);
+  HWY_DYNAMIC_DISPATCH(add_all_forces)(law, pairs, cell, shifts.data(), grains);
 }
 
 }  // namespace grainlaw::dem

@@ -65,10 +65,14 @@ template <class V>
 HWY_INLINE Vector<V> where_not_negative(Vector<V> test, Vector<V> a) {
   return {hn::IfThenElseZero(hn::Ge(test.v, hn::Zero(hn::DFromV<V>())), a.v)};
 }
-/// The last of the four, four times.
-HWY_INLINE Four spread_last(Four a) {
-  const auto last = hn::Broadcast<1>(a.v);
-  return {hn::ConcatUpperUpper(tag, last, last)};
+/// One of the four, four times.
+template <int which>
+HWY_INLINE Four spread(Four a) {
+  const auto both = hn::Broadcast<which % 2>(a.v);  // of each half
+  if constexpr (which < 2)
+    return {hn::ConcatLowerLower(tag, both, both)};
+  else
+    return {hn::ConcatUpperUpper(tag, both, both)};
 }
 /// The first three of `a`, the last of `b`.
 HWY_INLINE Four with_last(Four a, Four b) { return {hn::IfThenElse(hn::FirstN(tag, 3), a.v, b.v)}; }
@@ -167,7 +171,10 @@ HWY_INLINE Four larger(Four a, Four b) {
 HWY_INLINE Four where_not_negative(Four test, Four a) {
   return each([&](int k) { return test.v[k] >= 0 ? a.v[k] : 0.0; });
 }
-HWY_INLINE Four spread_last(Four a) { return all(a.v[3]); }
+template <int which>
+HWY_INLINE Four spread(Four a) {
+  return all(a.v[which]);
+}
 HWY_INLINE Four with_last(Four a, Four b) { return {{a.v[0], a.v[1], a.v[2], b.v[3]}}; }
 HWY_INLINE Four sum(Four a) { return all((a.v[0] + a.v[1]) + (a.v[2] + a.v[3])); }
 HWY_INLINE Four operator*(double a, Four b) {

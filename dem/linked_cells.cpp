@@ -30,10 +30,11 @@ LinkedCells::LinkedCells(const std::vector<Quad>& place, const Cell& cell, doubl
   // Not many more cells than grains: a dilute box would spend its time on empty ones.
   const double widest =
       std::cbrt(cell.volume() / static_cast<double>(std::max<std::size_t>(place.size(), 1)));
+  const Vec3 height = cell.heights();
   for (std::size_t c = 0; c < 3; ++c)
-    count_[c] = std::max(1, static_cast<int>(cell.length()[c] / std::max(range, widest)));
-  const auto along = [&](double x, std::size_t c) {
-    return std::clamp(static_cast<int>(x / cell.length()[c] * count_[c]), 0, count_[c] - 1);
+    count_[c] = std::max(1, static_cast<int>(height[c] / std::max(range, widest)));
+  const auto along = [&](const Vec3& part, std::size_t c) {
+    return std::clamp(static_cast<int>(part[c] * count_[c]), 0, count_[c] - 1);
   };
   std::vector<std::uint32_t> home(place.size());
   begin_.assign(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
@@ -41,8 +42,9 @@ LinkedCells::LinkedCells(const std::vector<Quad>& place, const Cell& cell, doubl
                     1,
                 0);
   for (std::size_t i = 0; i < place.size(); ++i) {
-    home[i] = static_cast<std::uint32_t>(
-        (along(place[i].x, 0) * count_[1] + along(place[i].y, 1)) * count_[2] + along(place[i].z, 2));
+    const Vec3 part = cell.fractions({place[i].x, place[i].y, place[i].z});
+    home[i] = static_cast<std::uint32_t>((along(part, 0) * count_[1] + along(part, 1)) * count_[2] +
+                                         along(part, 2));
     ++begin_[home[i] + 1];
   }
   for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];

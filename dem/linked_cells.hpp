@@ -23,9 +23,10 @@ struct NearPairs {
 
 class LinkedCells {
  public:
-  /// `place` must lie within the box, which must be at least `range` wide: cells are at least as wide as
-  /// that, and a grid may be one or two cells wide, because each of the 27 neighbours of a cell is looked up
-  /// together with the image it belongs to.
+  /// `place` must lie within the (reduced) box, whose faces must be at least `range` apart: the grid's cells
+  /// are cut along the box's edges and their faces are as far apart as that, so that two grains in range lie
+  /// in neighbouring ones. A grid may be one or two cells wide, because each of the 27 neighbours of a cell
+  /// is looked up together with the image it belongs to.
   LinkedCells(const std::vector<Quad>& place, const Cell& cell, double range);
 
   /// Grains cell by cell (z fastest), in each cell as they came.

@@ -18,13 +18,10 @@ constexpr std::uint32_t block = 64;   // grains that are grouped by their number
 constexpr std::uint32_t most_told_apart = 31;  // numbers of partners
 constexpr double flight_share = 0.125;         // s_i at most this share of the outer skin
 
-/// Smallest stretch, at most 1.
-double shrink(const Vec3& stretch) { return std::min({1.0, stretch[0], stretch[1], stretch[2]}); }
-
 /// |x - E X|^2
-double strayed(const Quad& x, const Quad& reference, const Vec3& stretch) {
-  const double a = x.x - stretch[0] * reference.x, b = x.y - stretch[1] * reference.y,
-               c = x.z - stretch[2] * reference.z;
+double strayed(const Quad& x, const Quad& reference, const Mat3& deformation) {
+  const Vec3 carried = deformation * Vec3{reference.x, reference.y, reference.z};
+  const double a = x.x - carried[0], b = x.y - carried[1], c = x.z - carried[2];
   return a * a + b * b + c * c;
 }
 
@@ -32,18 +29,19 @@ double strayed(const Quad& x, const Quad& reference, const Vec3& stretch) {
 
 bool Neighbours::outdated(const Grains& grains, const Cell& cell) const {
   if (inner_reference_.size() != grains.count()) return true;
-  const Vec3 stretch = cell.stretch_from(inner_length_);
+  const Mat3 deformation = cell.deformation_from(inner_cell_.edges());
   double excess = -1;
   for (std::size_t i = 0; i < grains.count(); ++i)
-    excess = std::max(excess, strayed(grains.place[i], inner_reference_[i], stretch) - inner_reference_[i].w);
+    excess =
+        std::max(excess, strayed(grains.place[i], inner_reference_[i], deformation) - inner_reference_[i].w);
   return outdated(cell, excess);
 }
 
 bool Neighbours::outdated(const Cell& cell, double excess) const {
-  return excess > 0 || shrink(cell.stretch_from(inner_length_)) < 1 - box_budget;
+  return excess > 0 || least_stretch(cell.deformation_from(inner_cell_.edges())) < 1 - box_budget;
 }
 
-void Neighbours::update(Grains& grains, const Cell& cell, double lookahead) {
+void Neighbours::update(Grains& grains, Cell& cell, double lookahead) {
   make_budgets(grains, lookahead);
   if (!outer_covers(grains, cell)) {
     sort_and_list(grains, cell);
@@ -68,17 +66,19 @@ void Neighbours::make_budgets(const Grains& grains, double lookahead) {
 /// the outer list was made, |w_i| + s_i/e_min + r_i (1/e_min - e) <= e skin/2.
 bool Neighbours::outer_covers(const Grains& grains, const Cell& cell) const {
   if (outer_reference_.size() != grains.count()) return false;
-  const Vec3 stretch = cell.stretch_from(outer_length_);
-  const double e = shrink(stretch), inflate = 1 / (1 - box_budget);
+  const Mat3 deformation = cell.deformation_from(outer_cell_.edges());
+  const double e = least_stretch(deformation), inflate = 1 / (1 - box_budget);
   for (std::size_t i = 0; i < grains.count(); ++i) {
     const double room = 0.5 * e * outer_skin_ - budget_[i] * inflate - grains.place[i].w * (inflate - e);
-    if (!(room >= 0) || strayed(grains.place[i], outer_reference_[i], stretch) > room * room) return false;
+    if (!(room >= 0) || strayed(grains.place[i], outer_reference_[i], deformation) > room * room)
+      return false;
   }
   return true;
 }
 
-void Neighbours::sort_and_list(Grains& grains, const Cell& cell) {
-  const double narrowest = cell.shortest(), widest_grain = 2 * largest_radius_;
+void Neighbours::sort_and_list(Grains& grains, Cell& cell) {
+  cell.reduce();
+  const double narrowest = cell.narrowest(), widest_grain = 2 * largest_radius_;
   outer_skin_ = std::min(outer_skin * unit_, narrowest - widest_grain);
   if (!(outer_skin_ >= least_skin * unit_))
     throw Error("the box is " + to_text(narrowest) +
@@ -93,7 +93,7 @@ void Neighbours::sort_and_list(Grains& grains, const Cell& cell) {
   grains.reorder(cells.order());
   cells.list_pairs(grains.place, cell, outer_skin_, outer_);
   outer_reference_ = grains.place;
-  outer_length_ = cell.length();
+  outer_cell_ = cell;
   ++sorts_;
 }
 
@@ -102,11 +102,11 @@ void Neighbours::sort_and_list(Grains& grains, const Cell& cell) {
 void Neighbours::rebuild(const Grains& grains) {
   Grains then;
   then.place = outer_reference_;
-  const Cell outer_cell(outer_length_);
-  LinkedCells(then.place, outer_cell, outer_range()).list_pairs(then.place, outer_cell, outer_skin_, outer_);
+  LinkedCells(then.place, outer_cell_, outer_range())
+      .list_pairs(then.place, outer_cell_, outer_skin_, outer_);
   then.place = inner_reference_;
   for (std::size_t i = 0; i < then.count(); ++i) then.place[i].w = grains.place[i].w;
-  filter(then, Cell(inner_length_));
+  filter(then, inner_cell_);
 }
 
 void Neighbours::filter(const Grains& grains, const Cell& cell) {
@@ -118,7 +118,7 @@ void Neighbours::filter(const Grains& grains, const Cell& cell) {
     const Quad& p = grains.place[i];
     inner_reference_[i] = {p.x, p.y, p.z, (p.w + budget_[i]) * inflate};
   }
-  inner_length_ = cell.length();
+  inner_cell_ = cell;
   const auto near = [this](const Quad& a, const Quad& b, const Quad& shift) {
     const double x = a.x - b.x - shift.x, y = a.y - b.y - shift.y, z = a.z - b.z - shift.z, reach = a.w + b.w;
     return x * x + y * y + z * z < reach * reach;

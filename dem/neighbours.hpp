@@ -13,9 +13,11 @@
 
 namespace grainlaw::dem {
 
-/// How a list stays right. Let X be the position of a grain when a list was made, E the stretch of the box
-/// since then (its smallest component, at most 1, is e), and w = x - E X what the grain moved on its own. Two
-/// grains whose images were |D| apart then are at least e|D| - |w_i| - |w_j| apart now. Each grain has a
+/// How a list stays right. Let X be the position of a grain when a list was made, E the deformation of the
+/// box since then, and w = x - E X what the grain moved on its own. An image lies a fixed number of edges
+/// away, so E carries it along: two grains whose images were D apart then are E D + w_i - w_j apart now. That
+/// is at least e|D| - |w_i| - |w_j|, where e is the smallest singular value of E (in an orthorhombic box its
+/// smallest component), or less, and at most 1. Each grain has a
 /// budget s_i for |w_i|, more if it flies; the box has one for e. Every pair with |D| < (r_i + s_i + r_j +
 /// s_j)/e_min is listed, so the list is complete as long as |w_i| <= s_i for all i and e >= e_min; `outdated`
 /// tests exactly that. The outer list has the same skin for all grains, and is renewed when a filtered list
@@ -30,13 +32,13 @@ class Neighbours {
   /// The same, where `excess` is what advance() returned for reach(cell).
   bool outdated(const Cell& cell, double excess) const;
   ListReach reach(const Cell& cell) const {
-    return {inner_reference_.data(), cell.stretch_from(inner_length_)};
+    return {inner_reference_.data(), cell.deformation_from(inner_cell_.edges())};
   }
 
-  /// Renews the list; wraps and sorts the grains where the outer list must be renewed too. A grain may go
-  /// `lookahead` us at its speed before the next call. Throws Error if the box is too narrow for a grain not
-  /// to touch its own image, or if two grains lie at the same point.
-  void update(Grains& grains, const Cell& cell, double lookahead);
+  /// Renews the list; wraps and sorts the grains and reduces the box where the outer list must be renewed
+  /// too. A grain may go `lookahead` us at its speed before the next call. Throws Error if the box is too
+  /// narrow for a grain not to touch its own image, or if two grains lie at the same point.
+  void update(Grains& grains, Cell& cell, double lookahead);
 
   const Pairs& pairs() const { return inner_; }
   std::size_t outer_pairs() const { return outer_.count(); }
@@ -46,8 +48,8 @@ class Neighbours {
   /// Keeps what the lists were made from; a reader must rebuild() them.
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {
-    archive(self.largest_radius_, self.outer_skin_, self.outer_reference_, self.outer_length_, self.budget_,
-            self.inner_reference_, self.inner_length_, self.updates_, self.sorts_);
+    archive(self.largest_radius_, self.outer_skin_, self.outer_reference_, self.outer_cell_, self.budget_,
+            self.inner_reference_, self.inner_cell_, self.updates_, self.sorts_);
   }
   /// Makes the same lists again, in the same order.
   void rebuild(const Grains& grains);
@@ -55,7 +57,7 @@ class Neighbours {
  private:
   void make_budgets(const Grains& grains, double lookahead);
   bool outer_covers(const Grains& grains, const Cell& cell) const;
-  void sort_and_list(Grains& grains, const Cell& cell);
+  void sort_and_list(Grains& grains, Cell& cell);
   double outer_range() const { return 2 * largest_radius_ + outer_skin_; }
   void filter(const Grains& grains, const Cell& cell);
   void group();
@@ -70,7 +72,7 @@ class Neighbours {
   std::vector<double> budget_;         ///< s_i, mm
   std::vector<Quad> inner_reference_;  ///< X | s_i^2, of the inner list
   std::vector<Quad> outer_reference_;  ///< X, of the outer list
-  Vec3 inner_length_{}, outer_length_{};
+  Cell inner_cell_, outer_cell_;       ///< when they were made
   std::uint64_t updates_ = 0, sorts_ = 0;
 };
 

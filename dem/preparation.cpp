@@ -52,7 +52,7 @@ void draw_velocities(State& state, const Material& material, double speed, Rando
 void push_apart(State& state) {
   State swollen = state;
   for (double& r : swollen.radius) r *= swelling;
-  const Cell cell(state.box);
+  Cell cell(state.box);
   Grains grains(swollen, 1);
   std::fill(grains.motion.begin(), grains.motion.end(), Quad{});
   Neighbours neighbours(grains.largest_radius(), grains.largest_radius());
@@ -83,7 +83,7 @@ State random_gas(const Material& material, const NewPacking& packing) {
   double solid = 0;
   for (const double r : state.radius) solid += sphere_volume(r);
   const double edge = std::cbrt(solid / packing.nu_gas);
-  state.box = {edge, edge, edge};
+  state.box = Mat3::diagonal({edge, edge, edge});
   state.position.resize(state.count());
   state.velocity.resize(state.count());
   for (auto& x : state.position)

@@ -195,18 +195,20 @@ std::vector<double> read_radius(const Source& source) {
   return radius;
 }
 
-std::array<double, 3> read_box(const Source& source, hsize_t frame) {
+/// The edges of the box, in columns; H5MD has them in rows.
+Mat3 read_box(const Source& source, hsize_t frame) {
   const std::string name = grains + "box/edges/value";
-  std::array<double, 9> edges{};
+  std::array<double, 9> e{};
   Series(source, name, H5T_FLOAT, {source.frames, 3, 3}, true)
-      .read({frame, 0, 0}, {1, 3, 3}, H5T_NATIVE_DOUBLE, edges.data());
-  for (std::size_t i = 0; i < 9; ++i) {
-    if (i % 4 == 0 && !(edges[i] > 0 && std::isfinite(edges[i])))
-      throw Failure(name + ": edges of the box must be > 0, got " + to_text(edges[i]));
-    if (i % 4 != 0 && edges[i] != 0)
-      throw Failure(name + ": the box must be orthorhombic, got an off-diagonal " + to_text(edges[i]));
-  }
-  return {edges[0], edges[4], edges[8]};
+      .read({frame, 0, 0}, {1, 3, 3}, H5T_NATIVE_DOUBLE, e.data());
+  const Mat3 box{{e[0], e[3], e[6]}, {e[1], e[4], e[7]}, {e[2], e[5], e[8]}};
+  for (std::size_t c = 0; c < 3; ++c)
+    if (box.is_diagonal() && !(box(c, c) > 0 && std::isfinite(box(c, c))))
+      throw Failure(name + ": edges of the box must be > 0, got " + to_text(box(c, c)));
+  if (!(determinant(box) > 0 && std::isfinite(determinant(box))))
+    throw Failure(name + ": edges of the box must span a right-handed parallelepiped, got a volume of " +
+                  to_text(determinant(box)));
+  return box;
 }
 
 Frame read_checked(const Source& source, const std::vector<Observables>& all, std::size_t index) {

@@ -210,11 +210,11 @@ void SnapshotWriter::append(const State& state, const Observables& observables) 
   if (state.radius != radius_ || state.position.size() != radius_.size() ||
       state.velocity.size() != radius_.size())
     throw Error(name, "", "a frame must hold the same grains as the file");
-  check_finite(name, {state.box}, "box");
+  check_finite(name, {state.box.row(0), state.box.row(1), state.box.row(2)}, "box");
   check_finite(name, state.position, "position");
   check_finite(name, state.velocity, "velocity");
   check_finite(name, {{observables.nu, observables.eps_vol, observables.eps_dev}}, "observables");
-  const std::array<double, 9> edges{state.box[0], 0, 0, 0, state.box[1], 0, 0, 0, state.box[2]};
+  const Mat3 edges = transposed(state.box);  // H5MD: edge vectors in the rows
   const hdf5::Session session;
   reserve(file_, radius_.size() * 6 * sizeof(double) + header_room);
   try {

@@ -94,7 +94,7 @@ std::vector<Stage> plan_stages(const Scene& scene, double nu_start, const Longes
 void check_width(const std::vector<Stage>& stages, const State& start, const Scene& scene) {
   const double widest = 2 * *std::max_element(start.radius.begin(), start.radius.end()),
                least = widest + 0.02 * scene.material.r_mean;
-  Vec3 length = start.box;
+  Vec3 length = start.box.diagonal();
   for (const Stage& stage : stages)
     for (std::size_t c = 0; c < 3; ++c) {
       length[c] *= std::exp(-stage.leg.strain[c]);

@@ -6,15 +6,17 @@
 #include <cstdint>
 #include <vector>
 
+#include "grainlaw/dem/matrix.hpp"
+
 namespace grainlaw::dem {
 
 /// N grains in a periodic box. All three vectors have N entries; entry i of each belongs to the same grain.
 struct State {
-  std::array<double, 3> box{};  ///< edge lengths, mm; > 0
+  Mat3 box;  ///< edges in its columns, mm; determinant > 0. Diagonal: an orthorhombic box
   double time_us = 0;
   std::uint64_t step = 0;
   std::vector<std::array<double, 3>>
-      position;  ///< mm; may lie outside [0, box): a periodic image counts as the grain
+      position;  ///< mm; may lie outside the box: a periodic image counts as the grain
   /// mm/us; the fluctuation, that is, the velocity beyond the affine motion of the box.
   std::vector<std::array<double, 3>> velocity;
   std::vector<double> radius;  ///< mm; > 0

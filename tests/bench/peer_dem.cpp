@@ -23,7 +23,7 @@ void write_data(const dem::State& state, const Material& material, const char* f
   std::fprintf(out, "packing of grainlaw; mm, us, ug\n\n%zu atoms\n1 atom types\n", state.count());
   const char* axes = "xyz";
   for (std::size_t c = 0; c < 3; ++c)
-    std::fprintf(out, "0 %.17g %clo %chi\n", state.box[c], axes[c], axes[c]);
+    std::fprintf(out, "0 %.17g %clo %chi\n", state.box(c, c), axes[c], axes[c]);
   std::fprintf(out, "\nAtoms # sphere\n\n");
   for (std::size_t i = 0; i < state.count(); ++i)
     std::fprintf(out, "%zu 1 %.17g %.17g %.17g %.17g %.17g\n", i + 1, 2 * state.radius[i], material.rho,

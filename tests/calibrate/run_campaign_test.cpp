@@ -46,7 +46,10 @@ class RunCampaign : public testing::Test {
       record.append(std::vector<double>(record_columns().size(), 0.5));
     record.write_csv(part / "record.csv");
     if (!scene.measure.snapshots.empty()) {
-      const dem::State one{.box = {9, 9, 9}, .position = {{1, 1, 1}}, .velocity = {{0, 0, 0}}, .radius = {1}};
+      const dem::State one{.box = dem::Mat3::diagonal({9, 9, 9}),
+                           .position = {{1, 1, 1}},
+                           .velocity = {{0, 0, 0}},
+                           .radius = {1}};
       dem::SnapshotWriter(part / "snapshots.h5", one.radius).append(one, {});
     }
     return {0.01, 1000, {}, false};

@@ -90,8 +90,8 @@ TEST(Dynamics, WorkOfTheBoxIsThatOfTheTotalStress) {
     double work = 0, power_before = power(now);
     for (int n = 1; n <= steps; ++n) {
       const double t = n * dt;
-      dynamics.step({start.box[0] * std::exp(rate[0] * t), start.box[1] * std::exp(rate[1] * t),
-                     start.box[2] * std::exp(rate[2] * t)},
+      dynamics.step({start.box(0, 0) * std::exp(rate[0] * t), start.box(1, 1) * std::exp(rate[1] * t),
+                     start.box(2, 2) * std::exp(rate[2] * t)},
                     rate);
       now = dynamics.measure();
       ASSERT_EQ(now.contacts, 192u);
@@ -123,8 +123,8 @@ TEST(Dynamics, FlightInADeformingBox) {
     EXPECT_NEAR(end.velocity[0][c], state.velocity[0][c] * std::exp(-20 * rate[c]), 1e-10);
     // d(x/L)/dt = v/L, so x/L grows by v0/L0 (1 - e^(-2 G t))/(2 G)
     const double g = rate[c], flight = g == 0 ? 20 : (1 - std::exp(-40 * g)) / (2 * g);
-    EXPECT_NEAR(end.position[0][c] / end.box[c], (state.position[0][c] + state.velocity[0][c] * flight) / 20,
-                1e-9);
+    EXPECT_NEAR(end.position[0][c] / end.box(c, c),
+                (state.position[0][c] + state.velocity[0][c] * flight) / 20, 1e-9);
   }
 }
 
@@ -154,16 +154,16 @@ TEST(Dynamics, BackgroundDoesNotHoldBackTheFlow) {
   Dynamics dynamics(m, state);
   const Vec3 rate{1e-3, -2e-3, 0};
   dynamics.start(0.05, rate);
-  Vec3 length = state.box;
+  Vec3 length = state.box.diagonal();
   for (int n = 1; n <= 2000; ++n) {
-    for (std::size_t c = 0; c < 3; ++c) length[c] = state.box[c] * std::exp(rate[c] * 0.05 * n);
+    for (std::size_t c = 0; c < 3; ++c) length[c] = state.box(c, c) * std::exp(rate[c] * 0.05 * n);
     dynamics.step(length, rate);
   }
   const State end = dynamics.state();
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(end.position[i][c] / end.box[c], state.position[i][c] / state.box[c], 1e-12);
-  EXPECT_DOUBLE_EQ(end.box[1], 20 * std::exp(-0.2));
+      EXPECT_NEAR(end.position[i][c] / end.box(c, c), state.position[i][c] / state.box(c, c), 1e-12);
+  EXPECT_DOUBLE_EQ(end.box(1, 1), 20 * std::exp(-0.2));
 }
 
 TEST(Dynamics, ContactsSeeTheTrueClosingVelocity) {

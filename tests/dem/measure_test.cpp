@@ -15,11 +15,11 @@ namespace {
 
 Measurement measured(const Material& m, const State& state) { return Dynamics(m, state).measure(); }
 
-State strained(State state, const Vec3& compression) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    state.box[c] *= std::exp(-compression[c]);
-    for (auto& x : state.position) x[c] *= std::exp(-compression[c]);
-  }
+/// The packing after l -> (1 - e) l.
+State strained(State state, const Mat3& compression) {
+  const Mat3 f = Mat3::identity() + -1.0 * compression;
+  state.box = f * state.box;
+  for (auto& x : state.position) x = f * x;
   return state;
 }
 
@@ -29,18 +29,25 @@ Material elastic() {
   return m;
 }
 
-TEST(Measure, NormalStressIsDerivativeOfEnergy) {
+TEST(Measure, StressIsDerivativeOfEnergyInAnyBox) {
+  // Box and grains strained together, all six components, of a box that is upright and of one that is tilted.
   const Material m = elastic();
-  const State state = test::squeezed(m, 150, 21, 0.75);
-  const Measurement here = measured(m, state);
-  const double volume = state.box[0] * state.box[1] * state.box[2], h = 1e-6;
-  for (std::size_t c = 0; c < 3; ++c) {
-    Vec3 plus{}, minus{};
-    plus[c] = h;
-    minus[c] = -h;
-    const double slope =
-        (measured(m, strained(state, plus)).elastic - measured(m, strained(state, minus)).elastic) / (2 * h);
-    EXPECT_NEAR(here.stress[c] / (slope / volume), 1, 1e-6) << c;
+  const State upright = test::squeezed(m, 150, 21, 0.75);
+  const State tilted = strained(upright, {{0.02, 0.3, -0.2}, {0.1, -0.05, 0.25}, {0, 0.1, 0.02}});
+  for (const State& state : {upright, tilted}) {
+    const Measurement here = measured(m, state);
+    const std::size_t axis_a[6] = {0, 1, 2, 1, 0, 0}, axis_b[6] = {0, 1, 2, 2, 2, 1};
+    const double h = 1e-6;
+    for (std::size_t c = 0; c < 6; ++c) {
+      Mat3 e;
+      e(axis_a[c], axis_b[c]) = e(axis_b[c], axis_a[c]) = h;
+      const double slope =
+          (measured(m, strained(state, e)).elastic - measured(m, strained(state, -1.0 * e)).elastic) /
+          (2 * h);
+      const double twice = c < 3 ? 1 : 2;  // both ab and ba are strained
+      EXPECT_NEAR(here.stress[c], slope / (twice * determinant(state.box)), 1e-6 * trace(here.stress) / 3)
+          << c;
+    }
   }
 }
 
@@ -75,7 +82,7 @@ TEST(Measure, AllStressComponentsAreDerivativesOfEnergy) {
 TEST(Measure, OneContactByHand) {
   const Material m = elastic();
   State state;
-  state.box = {10, 10, 10};
+  state.box = Mat3::diagonal({10, 10, 10});
   state.radius = {1, 0.5};
   state.position = {{0.2, 5, 5}, {9.0, 5, 5}};  // touch through the face x = 0; overlap 0.3
   state.velocity = {{0, 0, 0.1}, {0, 0, 0}};
@@ -123,7 +130,7 @@ TEST(Measure, RattlersAreLeftOutOfCAndKeptInFabric) {
   // only.
   const Material m = elastic();
   State state = test::crystal(0.99, 0);
-  const double a = 0.5 * state.box[0];
+  const double a = 0.5 * state.box(0, 0);
   // The hole's centre is 0.99 sqrt(2) = 1.400 from six grains; r = 0.3 leaves 0.1 of room: push it into a
   // corner.
   state.position.push_back({a / 2 + 0.12, 0.12, 0.12});
@@ -179,8 +186,8 @@ TEST_F(Invariance, TranslationAndImages) {
   State other = state;
   for (std::size_t i = 0; i < other.count(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      other.position[i][c] +=
-          1.234 * static_cast<double>(c + 1) + state.box[c] * static_cast<double>(i % 5) - 2 * state.box[c];
+      other.position[i][c] += 1.234 * static_cast<double>(c + 1) +
+                              state.box(c, c) * static_cast<double>(i % 5) - 2 * state.box(c, c);
   expect_equal(measured(m, other), here.stress, here.fabric);
 }
 
@@ -190,7 +197,7 @@ TEST_F(Invariance, AxisSwap) {
     other.position[i] = {state.position[i][1], state.position[i][2], state.position[i][0]};
     other.velocity[i] = {state.velocity[i][1], state.velocity[i][2], state.velocity[i][0]};
   }
-  other.box = {state.box[1], state.box[2], state.box[0]};
+  other.box = Mat3::diagonal({state.box(1, 1), state.box(2, 2), state.box(0, 0)});
   // x' = y, y' = z, z' = x, so yz' = zx, xz' = yx, xy' = yz
   const auto swapped = [](const Sym6& q) { return Sym6{q[1], q[2], q[0], q[4], q[5], q[3]}; };
   expect_equal(measured(m, other), swapped(here.stress), swapped(here.fabric));

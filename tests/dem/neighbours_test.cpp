@@ -18,9 +18,12 @@ struct Flow {
   double w;
   std::int64_t count;
   double nu, speed;
-  Vec3 rate;  ///< d(ln L)/dt, 1/us
+  Mat3 gradient;  ///< 1/us
   int steps;
+  int images = 2;  ///< edges that the farthest image to look at lies away
 };
+
+Mat3 axes(double x, double y, double z) { return Mat3::diagonal({x, y, z}); }
 
 void PrintTo(const Flow& flow, std::ostream* out) { *out << flow.name; }
 
@@ -34,15 +37,13 @@ TEST_P(NeighboursInFlow, EqualBruteForce) {
   Dynamics dynamics(m, start);
   const double dt = time_step(m, dynamics.grains().smallest_radius(), 0.1);
   Random random(5);
-  dynamics.start(dt, flow.rate);
+  dynamics.start_flow(dt, flow.gradient);
   int checks = 0;
   for (int n = 1; n <= flow.steps; ++n) {
-    Vec3 length;
-    for (std::size_t c = 0; c < 3; ++c) length[c] = start.box[c] * std::exp(flow.rate[c] * dt * n);
-    dynamics.step(length, flow.rate);
+    dynamics.step(test::deformation(flow.gradient, dt * n) * start.box, flow.gradient);
     if (random.below(static_cast<std::uint64_t>(flow.steps) / 40) != 0 && n != flow.steps) continue;
     ++checks;
-    const auto is = test::listed(dynamics), should = test::brute_force(dynamics.state());
+    const auto is = test::listed(dynamics), should = test::brute_force(dynamics.state(), flow.images);
     ASSERT_EQ(is.size(), should.size()) << "step " << n;
     for (std::size_t c = 0; c < is.size(); ++c) {
       EXPECT_EQ(std::get<0>(is[c]), std::get<0>(should[c]));
@@ -56,15 +57,27 @@ TEST_P(NeighboursInFlow, EqualBruteForce) {
 
 INSTANTIATE_TEST_SUITE_P(
     Flows, NeighboursInFlow,
-    testing::Values(Flow{"gas", 3, 200, 0.3, 0.5, {0, 0, 0}, 2000},
-                    Flow{"compressed gas", 3, 200, 0.3, 0.1, {-5e-3, -5e-3, -5e-3}, 2500},
-                    Flow{"decompression", 3, 200, 0.8, 0.02, {3e-3, 3e-3, 3e-3}, 2000},
-                    // eps_dev = 2: x and y change by a factor 3.2
-                    Flow{"d2 to large strain", 3, 300, 0.7, 0.02, {1e-2, -1e-2, 0}, 5060},
-                    Flow{"w = 10", 10, 200, 0.7, 0.05, {2e-3, -2e-3, 0}, 4000},
-                    // under two cut-offs wide: the same two grains touch through several images
-                    Flow{"eight grains", 3, 8, 0.75, 0.02, {3e-4, -3e-4, 0}, 4000},
-                    Flow{"narrow", 3, 60, 0.7, 0.05, {5e-3, 5e-3, -5e-3}, 5000}),
+    testing::Values(
+        Flow{"gas", 3, 200, 0.3, 0.5, axes(0, 0, 0), 2000},
+        Flow{"compressed gas", 3, 200, 0.3, 0.1, axes(-5e-3, -5e-3, -5e-3), 2500},
+        Flow{"decompression", 3, 200, 0.8, 0.02, axes(3e-3, 3e-3, 3e-3), 2000},
+        // eps_dev = 2: x and y change by a factor 3.2
+        Flow{"d2 to large strain", 3, 300, 0.7, 0.02, axes(1e-2, -1e-2, 0), 5060},
+        Flow{"w = 10", 10, 200, 0.7, 0.05, axes(2e-3, -2e-3, 0), 4000},
+        // under two cut-offs wide: the same two grains touch through several images
+        Flow{"eight grains", 3, 8, 0.75, 0.02, axes(3e-4, -3e-4, 0), 4000},
+        Flow{"narrow", 3, 60, 0.7, 0.05, axes(5e-3, 5e-3, -5e-3), 5000},
+        // to gamma = 2
+        Flow{"simple shear", 3, 60, 0.7, 0.05, {{0, 2e-2, 0}, {0, 0, 0}, {0, 0, 0}}, 4390, 6},
+        Flow{"shear of all planes",
+             3,
+             60,
+             0.7,
+             0.05,
+             {{2e-3, 1e-2, -8e-3}, {0, -4e-3, 1.5e-2}, {5e-3, 0, 2e-3}},
+             3000,
+             6},
+        Flow{"pure shear of eight", 3, 8, 0.6, 0.02, {{0, 3e-4, 0}, {3e-4, 0, 0}, {0, 0, 0}}, 4000, 4}),
     [](const auto& test) {
       std::string name;
       for (const char c : std::string(test.param.name))
@@ -78,7 +91,7 @@ TEST(Neighbours, FewFlyingGrainsDoNotForceRebuilds) {
   Material m;
   m.gamma_b = 0;
   State state = test::two_grains(0.5, 0.5, 0);
-  state.box = {40, 40, 40};
+  state.box = Mat3::diagonal({40, 40, 40});
   state.position = {{1, 1, 1}, {20, 20, 20}};
   state.velocity = {{0.2, 0.1, 0}, {0, 0, 0}};
   Dynamics dynamics(m, state);
@@ -90,7 +103,7 @@ TEST(Neighbours, FewFlyingGrainsDoNotForceRebuilds) {
 TEST(Neighbours, RefusesABoxThatItsGrainsCannotFitIn) {
   const Material m;
   State state = test::two_grains(1.5, 1.5, 0);
-  state.box = {20, 3.01, 20};
+  state.box = Mat3::diagonal({20, 3.01, 20});
   try {
     Dynamics dynamics(m, state);
     FAIL() << "not refused";

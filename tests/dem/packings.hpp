@@ -26,25 +26,52 @@ inline State squeezed(const Material& material, std::int64_t count, std::uint64_
   packing.speed = speed;
   State state = random_gas(material, packing);
   const double factor = std::cbrt(state.volume_fraction() / nu);
-  for (double& edge : state.box) edge *= factor;
+  state.box = factor * state.box;
   for (auto& x : state.position)
     for (double& component : x) component *= factor;
   return state;
 }
 
+/// Numbers in [-size, size).
+inline Mat3 random_matrix(Random& random, double size) {
+  Mat3 a;
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) a(r, c) = size * (2 * random.uniform() - 1);
+  return a;
+}
+
+/// By `angle` about this axis (Rodrigues).
+inline Mat3 rotation(const Vec3& axis, double angle) {
+  const double n = norm(axis), x = axis[0] / n, y = axis[1] / n, z = axis[2] / n;
+  const Mat3 cross{{0, -z, y}, {z, 0, -x}, {-y, x, 0}};
+  return Mat3::identity() + std::sin(angle) * cross + (1 - std::cos(angle)) * (cross * cross);
+}
+
+/// exp(G t): the deformation of a flow with a constant velocity gradient.
+inline Mat3 deformation(const Mat3& gradient, double t) {
+  Mat3 sum = Mat3::identity(), term = Mat3::identity();
+  for (int k = 1; k < 30; ++k) {
+    term = t / k * (gradient * term);
+    sum = sum + term;
+  }
+  return sum;
+}
+
 /// Overlap and the two grains, of every contact through every image, sorted.
 using ContactList = std::vector<std::tuple<std::uint32_t, std::uint32_t, double>>;
 
-inline ContactList brute_force(const State& state) {
+/// `most` edges of the box away at most.
+inline ContactList brute_force(const State& state, int most = 2) {
   ContactList list;
   for (std::uint32_t i = 0; i < state.count(); ++i)
     for (std::uint32_t j = i + 1; j < state.count(); ++j)
-      for (int a = -2; a <= 2; ++a)
-        for (int b = -2; b <= 2; ++b)
-          for (int c = -2; c <= 2; ++c) {
-            const Vec3 d{state.position[i][0] - state.position[j][0] - a * state.box[0],
-                         state.position[i][1] - state.position[j][1] - b * state.box[1],
-                         state.position[i][2] - state.position[j][2] - c * state.box[2]};
+      for (int a = -most; a <= most; ++a)
+        for (int b = -most; b <= most; ++b)
+          for (int c = -most; c <= most; ++c) {
+            Vec3 d;
+            for (std::size_t k = 0; k < 3; ++k)
+              d[k] = state.position[i][k] - state.position[j][k] - a * state.box(k, 0) - b * state.box(k, 1) -
+                     c * state.box(k, 2);
             const double overlap = state.radius[i] + state.radius[j] - norm(d);
             if (overlap >= 0) list.emplace_back(i, j, overlap);
           }
@@ -69,7 +96,7 @@ inline ContactList listed(const Dynamics& dynamics) {
 inline State two_grains(double r1, double r2, double closing) {
   const double s = 1 / std::sqrt(3.0);
   State state;
-  state.box = {20, 20, 20};
+  state.box = Mat3::diagonal({20, 20, 20});
   state.radius = {r1, r2};
   const double half = 0.5 * (r1 + r2 - 1e-12) * s, v = 0.5 * closing * s;
   state.position = {{10 - half, 10 - half, 10 - half}, {10 + half, 10 + half, 10 + half}};
@@ -82,7 +109,7 @@ inline State two_grains(double r1, double r2, double closing) {
 inline State crystal(double tightness, double speed) {
   const double a = 2 * std::numbers::sqrt2 * tightness;
   State state;
-  state.box = {2 * a, 2 * a, 2 * a};
+  state.box = Mat3::diagonal({2 * a, 2 * a, 2 * a});
   Random random(9);
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)

@@ -51,7 +51,7 @@ State random_state(std::size_t count, unsigned seed) {
   std::uniform_real_distribution<double> unit(0, 1);
   std::mt19937_64 sizes(7);  // radii are the same in every frame
   State state;
-  state.box = {4 + unit(random), 5 + unit(random), 6 + unit(random)};
+  state.box = Mat3::diagonal({4 + unit(random), 5 + unit(random), 6 + unit(random)});
   state.time_us = 1000 * unit(random);
   state.step = random() >> 8;
   for (std::size_t i = 0; i < count; ++i) {
@@ -152,7 +152,7 @@ TEST_F(SnapshotTest, MoreGrainsThanOneChunkHolds) {
 
 TEST_F(SnapshotTest, VolumeFractionOfAState) {
   State state;
-  state.box = {2, 3, 4};
+  state.box = Mat3::diagonal({2, 3, 4});
   state.radius = {0.5, 1};
   EXPECT_DOUBLE_EQ(state.volume_fraction(), 4.0 / 3.0 * std::numbers::pi * 1.125 / 24);
 }
@@ -386,15 +386,22 @@ TEST_F(SnapshotTest, NumbersThatCannotBe) {
   box[4] = -4;
   EXPECT_EQ(spoilt(grains + "box/edges/value", box),
             "/particles/grains/box/edges/value: edges of the box must be > 0, got -4");
-  box[4] = 4;
-  box[1] = 0.1;
+  box = {0, 4, 0, 4, 0, 0, 0, 0, 4};
   EXPECT_EQ(spoilt(grains + "box/edges/value", box),
-            "/particles/grains/box/edges/value: the box must be orthorhombic, got an off-diagonal 0.1");
+            "/particles/grains/box/edges/value: edges of the box must span a right-handed parallelepiped, "
+            "got a volume of -64");
   EXPECT_EQ(spoilt("/observables/nu/value", {std::nan("")}),
             "/observables/nu/value: frame 0 has a value that is not a number");
   EXPECT_NE(
       spoilt("/observables/nu/value", {0.5}).find("frame 0: nu is stored as 0.5, but grains and box give "),
       std::string::npos);
+}
+
+TEST_F(SnapshotTest, KeepsATiltedBox) {
+  State state = random_state(20, 3);
+  state.box = state.box * Mat3({1, 0.4, -0.3}, {0.1, 1, 1.7}, {0, 0.2, 1});
+  SnapshotWriter(file(), state.radius).append(state, observables_of(state));
+  EXPECT_EQ(read_frame(file(), {}), state);
 }
 
 // ---- the writer
