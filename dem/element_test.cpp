@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "grainlaw/dem/crystal_order.hpp"
 #include "grainlaw/dem/drive.hpp"
 #include "grainlaw/dem/preparation.hpp"
 #include "grainlaw/dem/provenance.hpp"
@@ -117,6 +118,8 @@ RunSummary ElementTest::run() {
   summary.particle_steps = watch_.particle_steps();
   if (summary.stopped) return summary;
   summary.warnings = recorder_.warnings();
+  if (may_crystallise(scene_.material))
+    summary.warnings.push_back(crystal_warning(scene_.material, dynamics_.state()));
   write_record(provenance, summary);
   return summary;
 }
