@@ -24,5 +24,6 @@ Action add_predict(CLI::App& program);
 Action add_fit(CLI::App& program);
 Action add_report(CLI::App& program);
 Action add_bench(CLI::App& program);
+Action add_export(CLI::App& program);
 
 }  // namespace grainlaw::apps

@@ -34,6 +34,8 @@ constexpr auto examples =
     "  grainlaw fit out/quick -o parameters.json                 the fits alone, from records on disk\n"
     "  grainlaw report out/quick                                 pictures and tables from what is on disk\n"
     "  grainlaw bench dem                                        what a wanted error of the DEM costs\n"
+    "  grainlaw export out/d2/snapshots.h5 -o d2.vtp             a packing and its force chains, for "
+    "ParaView\n"
     "File formats: docs/formats.md. Every command at length: docs/commands.md.\n"
     "Exit status: 0 well; 1 a test or an integration failed; 2 bad input or a full disk; 130 interrupted.";
 
@@ -56,8 +58,9 @@ int run_command_line(int argc, char** argv) {
   program.footer(examples);
   program.set_version_flag("--version", version_text(), "version, commit, compiler and libraries");
   program.require_subcommand(1);
-  const std::array<Action, 6> actions{add_calibrate(program), add_simulate(program), add_predict(program),
-                                      add_fit(program),       add_report(program),   add_bench(program)};
+  const std::array<Action, 7> actions{add_calibrate(program), add_simulate(program), add_predict(program),
+                                      add_fit(program),       add_report(program),   add_bench(program),
+                                      add_export(program)};
   const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
   const auto is_unknown = [&](const std::string& name) {
     return std::none_of(commands.begin(), commands.end(),
@@ -66,7 +69,7 @@ int run_command_line(int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-' && is_unknown(argv[1]))
     return complain_usage(
         program,
-        fmt::format("unknown command \"{}\"; known are calibrate, simulate, predict, fit, report, bench",
+        fmt::format("unknown command \"{}\"; known are calibrate, simulate, predict, fit, report, export, bench",
                     argv[1]));
   try {
     program.parse(argc, argv);

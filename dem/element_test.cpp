@@ -7,6 +7,7 @@
 
 #include "grainlaw/dem/archive.hpp"
 #include "grainlaw/dem/checkpoint.hpp"
+#include "grainlaw/dem/crystal_order.hpp"
 #include "grainlaw/dem/drive.hpp"
 #include "grainlaw/dem/preparation.hpp"
 #include "grainlaw/dem/provenance.hpp"
@@ -164,6 +165,8 @@ RunSummary ElementTest::run() {
   summary.particle_steps = watch_.particle_steps();
   if (summary.stopped) return summary;
   summary.warnings = recorder_.warnings();
+  if (may_crystallise(scene_.material))
+    summary.warnings.push_back(crystal_warning(scene_.material, dynamics_.state()));
   write_record(summary);
   return summary;
 }

@@ -15,7 +15,6 @@ constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double quasi_static = 1e-3;  // E_k/E_p of the thesis's data stays below (section 2.2.3)
 constexpr double bearing_pressure =
     1e-3;  // P* from which the grains bear load, be it at rest or by their motion
-constexpr double crystallising_w = 1.2;  // fits of the thesis leave out w below (Table 3.2)
 
 /// One row by column name.
 class Row {
@@ -115,9 +114,6 @@ std::vector<std::string> RowWriter::warnings() const {
     list.push_back("E_k/E_p is above 1e-3 in " + std::to_string(restless_) + rows + " (largest " +
                    short_text(worst_ratio_) + ", at nu = " + short_text(worst_nu_) +
                    "): there the deformation is not quasi-static");
-  if (material_.w < crystallising_w)
-    list.push_back("w = " + short_text(material_.w) +
-                   " is below 1.2: grains of nearly equal size may crystallise, and the laws may not hold");
   return list;
 }
 

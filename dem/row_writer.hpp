@@ -27,7 +27,7 @@ class RowWriter {
   const Record& record() const { return record_; }
 
   /// Sentences on E_k/E_p above 1e-3 and above 1 among the rows that bear load (at least half the grains have
-  /// four contacts; below jamming the ratio says nothing), and on crystallisation where w < 1.2.
+  /// four contacts; below jamming the ratio says nothing).
   std::vector<std::string> warnings() const;
 
   template <class Self, class Archive>

@@ -47,7 +47,7 @@ TEST_F(Program, VersionNamesCommitCompilerAndLibraries) {
 
 TEST_F(Program, HelpHasAnExampleForEachCommand) {
   const std::string help = run({"--help"}).out;
-  for (const char* name : {"calibrate", "simulate", "predict", "fit", "report", "bench"}) {
+  for (const char* name : {"calibrate", "simulate", "predict", "fit", "report", "export", "bench"}) {
     EXPECT_THAT(help, HasSubstr(std::string("  grainlaw ") + name));
     const Outcome own = run({name, "--help"});
     EXPECT_EQ(own.status, 0);
@@ -87,7 +87,7 @@ TEST_F(Program, EveryExampleOfTheManualWorks) {
     fs::remove_all(folder / "out/quick");
     fs::rename(folder / "kept", folder / "out/quick");
   }
-  for (const char* name : {"calibrate", "simulate", "predict", "fit", "report", "--version", "--help"})
+  for (const char* name : {"calibrate", "simulate", "predict", "fit", "report", "export", "--version", "--help"})
     EXPECT_GT(seen[name], 0) << name;
 }
 

@@ -1,40 +1,23 @@
 // Our side of the comparison with another DEM code (see peer_lammps): writes a packing of ours in LAMMPS's
-// data format, or lets it flow in D2 and says how fast that was and what came out. Usage:
+// data format, or lets it flow in D2 and says how fast that was (in processor time) and what came out. Usage:
 //   grainlaw_bench_peer_dem data SNAPSHOTS.h5 FILE
 //   grainlaw_bench_peer_dem run SNAPSHOTS.h5 STEPS TIME_STEP (over t_c) RATE (1/us)
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <string>
 
 #include "grainlaw/dem/drive.hpp"
 #include "grainlaw/dem/dynamics.hpp"
+#include "grainlaw/dem/lammps_data.hpp"
 #include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/element/file.hpp"
 
 namespace {
 
 using namespace grainlaw;
-
-void write_data(const dem::State& state, const Material& material, const char* file) {
-  std::FILE* out = std::fopen(file, "w");
-  if (out == nullptr) std::perror(file), std::exit(1);
-  std::fprintf(out, "packing of grainlaw; mm, us, ug\n\n%zu atoms\n1 atom types\n", state.count());
-  const char* axes = "xyz";
-  for (std::size_t c = 0; c < 3; ++c)
-    std::fprintf(out, "0 %.17g %clo %chi\n", state.box(c, c), axes[c], axes[c]);
-  std::fprintf(out, "\nAtoms # sphere\n\n");
-  for (std::size_t i = 0; i < state.count(); ++i)
-    std::fprintf(out, "%zu 1 %.17g %.17g %.17g %.17g %.17g\n", i + 1, 2 * state.radius[i], material.rho,
-                 state.position[i][0], state.position[i][1], state.position[i][2]);
-  std::fprintf(out, "\nVelocities\n\n");
-  for (std::size_t i = 0; i < state.count(); ++i) {
-    const auto& v = state.velocity[i];
-    std::fprintf(out, "%zu %.17g %.17g %.17g 0 0 0\n", i + 1, v[0], v[1], v[2]);
-  }
-  if (std::fclose(out) != 0) std::perror(file), std::exit(1);
-}
 
 void print(const char* when, const dem::Measurement& m) {
   std::printf("%s stress %.15g %.15g %.15g contacts %llu\n", when, m.stress[0], m.stress[1], m.stress[2],
@@ -53,11 +36,11 @@ void flow(const dem::State& state, const Material& material, std::uint64_t steps
   dem::StepPlan plan = dem::plan_steps(d2, d2.duration, steps);
   std::printf("dt %.17g\n", plan.dt);
   print("before", dynamics.measure());
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   dem::drive(dynamics, d2, plan);
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   print("after", dynamics.measure());
-  std::printf("speed %.6g\n", static_cast<double>(steps * state.count()) / wall.count() / 1e6);
+  std::printf("speed %.6g\n", static_cast<double>(steps * state.count()) / seconds / 1e6);
 }
 
 }  // namespace
@@ -67,7 +50,7 @@ int main(int count, char** arguments) try {
   const Material material;
   const dem::State state = dem::read_frame(arguments[2], {});
   if (std::strcmp(arguments[1], "data") == 0)
-    write_data(state, material, arguments[3]);
+    write_file(arguments[3], dem::lammps_data(state, material));
   else if (count == 6)
     flow(state, material, std::strtoull(arguments[3], nullptr, 10), std::atof(arguments[4]),
          std::atof(arguments[5]));

@@ -61,7 +61,7 @@ void write_data(const dem::Frame& frame, const Material& material, const char* f
   out.precision(17);
   out << "packing of grainlaw; mm, us, ug\n\n" << state.count() << " atoms\n1 atom types\n";
   for (std::size_t c = 0; c < 3; ++c)
-    out << "0 " << state.box[c] << ' ' << "xyz"[c] << "lo "
+    out << "0 " << state.box(c, c) << ' ' << "xyz"[c] << "lo "
         << "xyz"[c] << "hi\n";
   out << "\nAtoms # sphere\n\n";
   for (std::size_t i = 0; i < state.count(); ++i) {
@@ -93,7 +93,7 @@ bool read_dump(std::istream& in, dem::State& state) {
     std::istringstream ends(line);
     double high = 0;
     ends >> low[c] >> high;
-    state.box[c] = high - low[c];
+    state.box(c, c) = high - low[c];
   }
   std::getline(in, line);
   const dem::Vec3 growth{rate, -rate, 0};
@@ -104,7 +104,7 @@ bool read_dump(std::istream& in, dem::State& state) {
     for (double& v : state.velocity.at(i)) v = std::strtod(at, &at);
     for (std::size_t c = 0; c < 3; ++c) {
       state.position[i][c] -= low[c];
-      state.velocity[i][c] -= growth[c] * (state.position[i][c] - state.box[c] / 2);
+      state.velocity[i][c] -= growth[c] * (state.position[i][c] - state.box(c, c) / 2);
     }
   }
   return static_cast<bool>(in);

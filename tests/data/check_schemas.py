@@ -118,7 +118,8 @@ def check_examples(schemas, data):
         if file.parent in known:
             continue
         count += 1
-        recorded = (data / "records") in file.parents and f"{file.stem}.schema.json" in schemas.each
+        recorded = (any(data / folder in file.parents for folder in ("records", "reference"))
+                    and f"{file.stem}.schema.json" in schemas.each)
         reason = schemas.complaint(f"{file.stem}.schema.json", load(file)) if recorded else "under no schema"
         if reason:
             faults.append(f"{file.relative_to(data)}: {reason}")
