@@ -40,7 +40,8 @@ double product(const std::vector<Near>& a, const std::vector<Near>& b) {
 }
 
 std::vector<std::vector<Near>> neighbourhoods(const State& state) {
-  const Cell cell(state.box);
+  Cell cell(state.box);
+  cell.reduce();
   double mean = 0, largest = 0;
   std::vector<Quad> place;
   for (std::size_t i = 0; i < state.count(); ++i) {
@@ -49,7 +50,7 @@ std::vector<std::vector<Near>> neighbourhoods(const State& state) {
     mean += 2 * state.radius[i] / static_cast<double>(state.count());
     largest = std::max(largest, 2 * state.radius[i]);
   }
-  const double skin = std::min((neighbour_range - 1) * mean, cell.shortest() - largest);
+  const double skin = std::min((neighbour_range - 1) * mean, cell.narrowest() - largest);
   const LinkedCells cells(place, cell, largest + skin);
   std::vector<Quad> sorted;
   for (const std::uint32_t i : cells.order()) sorted.push_back(place[i]);

@@ -40,7 +40,7 @@ struct LegState {
 
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {
-    archive(self.step, self.start_length, self.kinetic_at_start);
+    archive(self.step, self.start_edges, self.kinetic_at_start);
   }
 };
 

@@ -9,6 +9,8 @@ namespace grainlaw::dem {
 
 std::string lammps_data(const State& state, const Material& material) {
   const Cell cell(state.box);
+  if (cell.tilted())
+    throw Error("the box must be orthorhombic to be written for LAMMPS, but its edges are tilted");
   const std::array<const char*, 3> bounds{" xlo xhi\n", " ylo yhi\n", " zlo zhi\n"};
   std::string text =
       "Packing of grainlaw in mm, us, ug\n\n" + std::to_string(state.count()) + " atoms\n1 atom types\n\n";

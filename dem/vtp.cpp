@@ -130,13 +130,16 @@ std::string lines_of(const std::vector<Line>& lines) {
 
 std::string vtp_text(const Frame& frame, const Material& material) {
   const Network net = network_of(frame.state, material);
+  const Mat3& h = frame.state.box;
+  const auto edge = [&h](std::size_t c) { return words({h(0, c), h(1, c), h(2, c)}); };
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n" +
-         field("box", 3, words(frame.state.box)) + field("nu", 1, to_text(frame.observables.nu)) +
-         field("TimeValue", 1, to_text(frame.state.time_us)) + "</FieldData>\n<Piece NumberOfPoints=\"" +
-         std::to_string(net.points.size()) + "\" NumberOfVerts=\"0\" NumberOfLines=\"" +
-         std::to_string(net.lines.size()) + "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n" +
-         point_data(net.points) + cell_data(net) + "<Points>\n" +
+         field("box", 9, edge(0) + " " + edge(1) + " " + edge(2)) +
+         field("nu", 1, to_text(frame.observables.nu)) + field("TimeValue", 1, to_text(frame.state.time_us)) +
+         "</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(net.points.size()) +
+         "\" NumberOfVerts=\"0\" NumberOfLines=\"" + std::to_string(net.lines.size()) +
+         "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n" + point_data(net.points) + cell_data(net) +
+         "<Points>\n" +
          array("Float64", "Points", 3, net.points, [](const Point& p) { return words(p.place); }) +
          "</Points>\n" + lines_of(net.lines) + "</Piece>\n</PolyData>\n</VTKFile>\n";
 }

@@ -34,8 +34,8 @@ TEST(CrystalOrder, HalfAndHalf) {
   const State gas = test::squeezed(equal_grains(), 30, 5, 0.5);
   const double edge = state.box(0, 0);
   for (const auto& x : gas.position) {
-    state.position.push_back(
-        {edge + 1 + x[0] * (edge - 2) / gas.box(0, 0), x[1] * edge / gas.box(1, 1), x[2] * edge / gas.box(2, 2)});
+    state.position.push_back({edge + 1 + x[0] * (edge - 2) / gas.box(0, 0), x[1] * edge / gas.box(1, 1),
+                              x[2] * edge / gas.box(2, 2)});
     state.velocity.push_back({});
     state.radius.push_back(1);
   }

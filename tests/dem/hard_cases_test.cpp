@@ -87,7 +87,7 @@ TEST_F(HardCase, ANarrowBoxHasExactImages) {
   const State one = test::squeezed(m, 8, 3, 0.8);
   ASSERT_LT(one.box(0, 0), 2 * 3.02);
   State eight = one;
-  for (double& edge : eight.box) edge *= 2;
+  for (std::size_t c = 0; c < 3; ++c) eight.box(c, c) *= 2;
   eight.position.clear(), eight.velocity.clear(), eight.radius.clear();
   for (int copy = 0; copy < 8; ++copy)
     for (std::size_t i = 0; i < one.count(); ++i) {

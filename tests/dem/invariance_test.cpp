@@ -13,15 +13,15 @@ class TrajectoryInvariance : public testing::Test {
  protected:
   Material m;
   State start = test::squeezed(m, 120, 31, 0.72);
-  Vec3 rate{1e-3, -2e-3, 5e-4};
-  State end = followed(start, rate);
+  Vec3 flow{1e-3, -2e-3, 5e-4};
+  State end = followed(start, flow);
 
-  /// 400 steps of a flow in which contacts open and close.
+  /// 200 steps of a flow in which contacts open and close.
   State followed(const State& from, const Vec3& rate) const {
     Dynamics dynamics(m, from);
     const double dt = time_step(m, dynamics.grains().smallest_radius(), 0.1);
     dynamics.start(dt, rate);
-    for (int n = 1; n <= 400; ++n) {
+    for (int n = 1; n <= 200; ++n) {
       Vec3 length;
       for (std::size_t c = 0; c < 3; ++c) length[c] = from.box(c, c) * std::exp(rate[c] * dt * n);
       dynamics.step(length, rate);
@@ -56,7 +56,7 @@ TEST_F(TrajectoryInvariance, Permutation) {
     other.radius[i] = start.radius[order[i]];
   }
   expect_same(
-      followed(other, rate), [&](std::size_t i) { return order[i]; }, [](const Vec3& x) { return x; });
+      followed(other, flow), [&](std::size_t i) { return order[i]; }, [](const Vec3& x) { return x; });
 }
 
 TEST_F(TrajectoryInvariance, TranslationAndImages) {
@@ -66,9 +66,9 @@ TEST_F(TrajectoryInvariance, TranslationAndImages) {
     for (std::size_t c = 0; c < 3; ++c)
       other.position[i][c] += by[c] + start.box(c, c) * (static_cast<double>(i % 3) - 1);
   // The box deforms about the origin, and carries the shift along.
-  const Vec3 stretch = Cell(end.box).stretch_from(start.box);
+  const Vec3 stretch = Cell(end.box).deformation_from(start.box).diagonal();
   expect_same(
-      followed(other, rate), [](std::size_t i) { return i; },
+      followed(other, flow), [](std::size_t i) { return i; },
       [&](const Vec3& x) {
         return Vec3{x[0] - by[0] * stretch[0], x[1] - by[1] * stretch[1], x[2] - by[2] * stretch[2]};
       });
@@ -79,9 +79,9 @@ TEST_F(TrajectoryInvariance, AxisSwap) {
   State other = start;
   for (auto& x : other.position) x = swapped(x);
   for (auto& v : other.velocity) v = swapped(v);
-  other.box = swapped(start.box);
+  other.box = Mat3::diagonal(swapped(start.box.diagonal()));
   expect_same(
-      followed(other, swapped(rate)), [](std::size_t i) { return i; },
+      followed(other, swapped(flow)), [](std::size_t i) { return i; },
       [](const Vec3& x) {
         return Vec3{x[2], x[0], x[1]};
       });

@@ -49,9 +49,9 @@ State read_packing() {
   const auto count = static_cast<std::size_t>(next(file));
   EXPECT_EQ(next(file), 1);  // type of atoms
   State state;
-  for (double& edge : state.box) {
+  for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_EQ(next(file), 0);
-    edge = next(file);
+    state.box(c, c) = next(file);
   }
   for (std::size_t i = 0; i < count; ++i) {
     EXPECT_EQ(next(file), static_cast<double>(i + 1));

@@ -52,7 +52,8 @@ TEST_F(Vtp, PointsAreTheGrains) {
     EXPECT_EQ(radius[i], 0);
     EXPECT_EQ(grain[i], -1);
   }
-  EXPECT_EQ(array(text, "box"), (std::vector<double>{state.box(0, 0), state.box(1, 1), state.box(2, 2)}));
+  EXPECT_EQ(array(text, "box"),
+            (std::vector<double>{state.box(0, 0), 0, 0, 0, state.box(1, 1), 0, 0, 0, state.box(2, 2)}));
 }
 
 TEST_F(Vtp, LinesAreTheContacts) {
@@ -94,7 +95,7 @@ TEST_F(Vtp, PressuresAddUpToThatOfThePacking) {
 TEST(VtpAlone, TwoGrainsThroughAFaceAreTwoHalves) {
   const Material m;
   State two;
-  two.box = {10, 10, 10};
+  two.box = Mat3::diagonal({10, 10, 10});
   two.radius = {1, 0.5};
   two.position = {{0.2, 5, 5}, {9, 5, 5}};  // overlap 0.3 through x = 0
   two.velocity = {{0, 0, 0}, {0, 0, 0}};
