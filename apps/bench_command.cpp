@@ -155,7 +155,7 @@ std::string advice(const std::vector<calibrate::BenchError>& errors) {
 
 /// The numbers and pictures of what is on disk.
 std::vector<calibrate::BenchError> write_result(const calibrate::Bench& bench, const fs::path& dir) {
-  const auto errors = calibrate::bench_errors(bench, calibrate::RecordFolder{dir});
+  const auto errors = calibrate::bench_errors(bench, calibrate::RunFolder{dir});
   Json result{{"bench", bench.to_json()},         {"version", version()},       {"commit", commit()},
               {"compiler", dem::compiler_name()}, {"simd", dem::simd_target()}, {"written", dem::utc_now()},
               {"errors", to_json(errors)}};

@@ -14,7 +14,8 @@ namespace grainlaw::calibrate {
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-constexpr double most_bands = 2;  // an error beyond so many bands is not chance
+constexpr double most_bands = 2;           // an error beyond so many bands is not chance
+constexpr double negligible_error = 1e-3;  // nobody needs less, be there chaos or not
 
 Series mean_of(const std::vector<Series>& runs) {
   Series mean(runs.front().size(), 0);
@@ -46,8 +47,7 @@ const std::vector<std::string>& quantities_of(BenchTest test) {
 }
 
 /// The runs of a variant, without the row at the start, which is no result of the setting.
-std::optional<std::vector<std::vector<Record>>> read_runs(const Variant& variant,
-                                                          const RecordFolder& folder) {
+std::optional<std::vector<std::vector<Record>>> read_runs(const Variant& variant, const RunFolder& folder) {
   std::vector<std::vector<Record>> groups;
   for (const auto& names : variant.records) {
     groups.emplace_back();
@@ -73,7 +73,7 @@ struct Cost {
   std::size_t runs = 0;
 };
 
-Cost cost_of(const Variant& variant, const RecordFolder& folder) {
+Cost cost_of(const Variant& variant, const RunFolder& folder) {
   Cost cost;
   for (const auto& names : variant.records)
     for (const std::string& name : names) {
@@ -102,7 +102,7 @@ Series variance_of(Knob knob, const Groups& runs, const std::vector<const Groups
   return knob == Knob::count ? pooled_variance({&runs}) : pooled_variance(all);
 }
 
-void add_errors(const Sweep& sweep, const RecordFolder& folder, std::vector<BenchError>& errors) {
+void add_errors(const Sweep& sweep, const RunFolder& folder, std::vector<BenchError>& errors) {
   std::vector<const Variant*> variants;
   std::vector<std::vector<std::vector<Record>>> runs;
   for (const Variant& variant : sweep.variants)
@@ -138,9 +138,9 @@ std::string number(double x) {
   return text;
 }
 
-/// Whether chance explains the error.
+/// Whether chance explains the error, or it is too small to matter.
 bool within_band(const BenchError& line) {
-  return line.comparison.error <= most_bands * line.comparison.band;
+  return line.comparison.error <= std::max(most_bands * line.comparison.band, negligible_error);
 }
 
 }  // namespace
@@ -184,7 +184,7 @@ Series pooled_variance(const std::vector<const Groups*>& sets) {
   return sum;
 }
 
-std::vector<BenchError> bench_errors(const Bench& bench, const RecordFolder& folder) {
+std::vector<BenchError> bench_errors(const Bench& bench, const RunFolder& folder) {
   std::vector<BenchError> errors;
   for (const Sweep& sweep : sweeps(bench)) add_errors(sweep, folder, errors);
   return errors;
@@ -197,7 +197,8 @@ std::vector<Recommendation> recommend(const std::vector<BenchError>& errors) {
     const BenchError* worst = nullptr;
   };
   const auto ratio = [](const BenchError& line) {
-    return line.comparison.band > 0 ? line.comparison.error / line.comparison.band : 0;
+    const bool matters = !line.finest && line.comparison.error > negligible_error;
+    return matters ? line.comparison.error / line.comparison.band : 0;
   };
   std::map<Knob, std::map<double, Candidate>> knobs;
   for (const BenchError& line : errors) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "grainlaw/calibrate/bench.hpp"
-#include "grainlaw/calibrate/record_folder.hpp"
+#include "grainlaw/calibrate/run_folder.hpp"
 
 namespace grainlaw::calibrate {
 
@@ -41,10 +41,11 @@ struct BenchError {
 };
 
 /// Of all sweeps whose finest runs are there; values whose runs are not all there are left out.
-std::vector<BenchError> bench_errors(const Bench& bench, const RecordFolder& folder);
+std::vector<BenchError> bench_errors(const Bench& bench, const RunFolder& folder);
 
-/// The cheapest value of a knob whose errors are all within twice the band. `worst` is the largest error over
-/// band at that value, and `quantity` says of what.
+/// The cheapest value of a knob whose errors are all within twice the band, or below a thousandth. `worst` is
+/// the largest error over band at that value (of errors above a thousandth; else 0), and `quantity` says of
+/// what.
 struct Recommendation {
   Knob knob;
   double value;

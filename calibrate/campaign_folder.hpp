@@ -8,7 +8,7 @@
 
 #include "grainlaw/calibrate/campaign.hpp"
 #include "grainlaw/calibrate/lock_file.hpp"
-#include "grainlaw/calibrate/record_folder.hpp"
+#include "grainlaw/calibrate/run_folder.hpp"
 
 namespace grainlaw::calibrate {
 
@@ -22,7 +22,7 @@ class CampaignFolder {
   CampaignFolder(const Campaign& campaign, std::filesystem::path dir, Use use);
 
   const std::filesystem::path& dir() const { return dir_; }
-  RecordFolder records() const { return {dir_}; }
+  RunFolder records() const { return {dir_}; }
 
  private:
   std::filesystem::path dir_;

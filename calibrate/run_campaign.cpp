@@ -53,7 +53,7 @@ struct Ending {
 
 class Runner {
  public:
-  Runner(std::vector<Job> jobs, RecordFolder folder, const RunOptions& options)
+  Runner(std::vector<Job> jobs, RunFolder folder, const RunOptions& options)
       : folder_(std::move(folder)),
         options_(options),
         jobs_(std::move(jobs)),
@@ -75,7 +75,7 @@ class Runner {
   void write_failures() const;
   bool halted() const { return halt_.load(std::memory_order_relaxed); }
 
-  const RecordFolder folder_;
+  const RunFolder folder_;
   const RunOptions& options_;
   const std::vector<Job> jobs_;
   CampaignResult result_;
@@ -303,7 +303,7 @@ CampaignResult run_campaign(const Campaign& campaign, const CampaignFolder& fold
   return run_jobs(plan(campaign), folder.records(), options);
 }
 
-CampaignResult run_jobs(std::vector<Job> jobs, const RecordFolder& folder, const RunOptions& options) {
+CampaignResult run_jobs(std::vector<Job> jobs, const RunFolder& folder, const RunOptions& options) {
   return Runner(std::move(jobs), folder, options).run();
 }
 

@@ -70,6 +70,6 @@ CampaignResult run_campaign(const Campaign& campaign, const CampaignFolder& fold
 
 /// The same for runs that were planned elsewhere; `folder.dir` has a directory `records`, and whoever calls
 /// holds it.
-CampaignResult run_jobs(std::vector<Job> jobs, const RecordFolder& folder, const RunOptions& options);
+CampaignResult run_jobs(std::vector<Job> jobs, const RunFolder& folder, const RunOptions& options);
 
 }  // namespace grainlaw::calibrate

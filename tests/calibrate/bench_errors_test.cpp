@@ -83,6 +83,14 @@ TEST(BenchErrors, RecommendsTheCheapestWithinTwoBands) {
   EXPECT_NEAR(best[0].worst, 1.9, 1e-12);
 }
 
+TEST(BenchErrors, AnErrorBelowAThousandthIsGoodEnough) {
+  auto quiet = line(Knob::time_step, 5, 1, 9e-4);
+  quiet.comparison.band = 1e-9;
+  const auto best = recommend({quiet, line(Knob::time_step, 200, 40, 0, true)});
+  ASSERT_EQ(best.size(), 1u);
+  EXPECT_EQ(best[0].value, 5);
+}
+
 TEST(BenchErrors, OneBadQuantityIsEnough) {
   auto bad = line(Knob::rate, 3, 1, 0.05);
   bad.quantity = "F_dev";
@@ -114,7 +122,7 @@ class BenchFolder : public testing::Test {
     write_file(folder.record(name) / core_time_file, Json{{"core_s", 0.5}}.dump());
   }
 
-  RecordFolder folder;
+  RunFolder folder;
 };
 
 TEST_F(BenchFolder, ReadsWhatIsThereAndLeavesOutWhatIsNot) {

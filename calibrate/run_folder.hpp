@@ -6,7 +6,7 @@
 
 namespace grainlaw::calibrate {
 
-struct RecordFolder {
+struct RunFolder {
   std::filesystem::path dir;
 
   /// records/NAME, and records/NAME.part while it is being made.
