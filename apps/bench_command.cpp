@@ -6,6 +6,7 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,11 +22,13 @@
 #include "grainlaw/calibrate/bench_errors.hpp"
 #include "grainlaw/calibrate/lock_file.hpp"
 #include "grainlaw/calibrate/run_campaign.hpp"
+#include "grainlaw/dem/checkpoint.hpp"
 #include "grainlaw/dem/provenance.hpp"
 #include "grainlaw/dem/simd.hpp"
 #include "grainlaw/dem/snapshot.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
+#include "grainlaw/element/json_difference.hpp"
 #include "grainlaw/element/version.hpp"
 
 namespace grainlaw::apps {
@@ -93,7 +96,7 @@ void check_directory(const fs::path& dir, const calibrate::Bench& bench, bool re
         throw Error(dir.string(), "", "is not empty and holds no bench; give another directory with -o");
     return;
   }
-  if (const auto differs = calibrate::first_difference(load_json(written), bench.to_json()); !differs.empty())
+  if (const auto differs = first_difference(load_json(written), bench.to_json()); !differs.empty())
     throw Error(dir.string(), "", "holds another bench (" + differs + "); give another directory with -o");
   if (!resume)
     throw Error(dir.string(), "",
@@ -117,15 +120,27 @@ void write_twins(const fs::path& dir, std::int64_t twins) {
   }
 }
 
+/// What a test has taken of a core so far: nothing where it is new, unknown where it was killed.
+std::optional<double> seconds_before(const fs::path& dir) {
+  const fs::path file = dir / calibrate::core_time_file;
+  if (!dem::has_checkpoint(dir)) return 0;
+  if (!fs::exists(file)) return std::nullopt;
+  const double seconds = load_json(file).at("core_s").get<double>();
+  fs::remove(file);
+  return seconds;
+}
+
 /// Runs a test, notes what it took of a core, and makes the twins of a packing.
 calibrate::RunTest timed_test(const calibrate::Bench& bench) {
   return [twins = bench.twins](const dem::Scene& scene, const fs::path& dir, const dem::RunHooks& hooks) {
+    const auto before = seconds_before(dir);
     const double begin = thread_seconds();
     const dem::RunSummary summary = dem::run_element_test(scene, dir, hooks);
     const double core_s = thread_seconds() - begin;
-    if (summary.stopped) return summary;
-    write_file(dir / calibrate::core_time_file, Json{{"core_s", core_s}}.dump(2) + "\n");
-    if (std::holds_alternative<dem::NewPacking>(scene.preparation)) write_twins(dir, twins);
+    if (before && (!summary.stopped || dem::has_checkpoint(dir)))
+      write_file(dir / calibrate::core_time_file, Json{{"core_s", *before + core_s}}.dump(2) + "\n");
+    if (!summary.stopped && std::holds_alternative<dem::NewPacking>(scene.preparation))
+      write_twins(dir, twins);
     return summary;
   };
 }
@@ -180,8 +195,11 @@ int run(const Arguments& arguments) {
   Interrupt interrupt;
   const auto jobs = plan(bench);
   talk.say(fmt::format("bench of {} runs, N = {}, in {}", jobs.size(), bench.count, dir.string()));
-  const auto result =
-      calibrate::run_jobs(jobs, {dir}, {workers, talk.hooks(interrupt.stop()), timed_test(bench)});
+  calibrate::RunOptions options;
+  options.workers = workers;
+  options.hooks = talk.hooks(interrupt.stop());
+  options.run_test = timed_test(bench);
+  const auto result = calibrate::run_jobs(jobs, {dir}, options);
   const auto errors = write_result(bench, dir);
   if (result.stopped) {
     talk.complain(fmt::format("stopped; {} finished runs are kept; go on with --resume",
