@@ -47,7 +47,7 @@ TEST_F(Export, BadInput) {
   EXPECT_TRUE(refused({"-o", "p.vtp", "--nu", "2"}, {"--nu: must be a number > 0 and < 1, got 2"}));
   EXPECT_TRUE(refused({"-o", "p.vtp", "--nu", "0.72"}, {"r/snapshots.h5", "segment"}));
   EXPECT_TRUE(refused({"-o", "p.vtp", "--frame", "4"}, {"r/snapshots.h5", "frame"}));
-  EXPECT_TRUE(refused({"-o", "p.vtp", "--frame", "1", "--nu", "0.7"}, {"--frame excludes --nu"}));
+  EXPECT_TRUE(refused({"-o", "p.vtp", "--frame", "1", "--nu", "0.7"}, {"--nu excludes --frame"}));
   EXPECT_TRUE(refuses(run({"export", "no.h5", "-o", "p.vtp"}), {"no.h5: no such file"}));
   EXPECT_TRUE(refuses(run({"export", "s.json", "-o", "p.vtp"}), {"s.json"}));
   write("other.json", R"({"material": {"r_mean": 2}, "preparation": {"count": 64}, "path": {"segments": [
