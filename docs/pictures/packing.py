@@ -94,7 +94,7 @@ class Panel:
 
 
 def draw(arrays, folder):
-    box = arrays["box"]
+    box = arrays["box"][::4]  # the diagonal: edges along the axes
     triples = [arrays["Points"][i:i + 3] for i in range(0, len(arrays["Points"]), 3)]
     points = [view(x, box) for x in triples]
     across = 1.04 * max(box[0] * math.cos(math.radians(24)) + box[2] * math.sin(math.radians(24)), 1.25 * box[1])
