@@ -1,23 +1,31 @@
 #include "grainlaw/calibrate/shear_projection.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace grainlaw::calibrate {
 namespace {
 
-using Components = std::array<const char*, 3>;
-constexpr Components stress{"sxx", "syy", "szz"}, fabric{"Fxx", "Fyy", "Fzz"};
+using Components = std::array<const char*, 6>;
+constexpr Components stress{"sxx", "syy", "szz", "syz", "sxz", "sxy"},
+    fabric{"Fxx", "Fyy", "Fzz", "Fyz", "Fxz", "Fxy"};
 
-bool has_all(const Record& rows, const Components& names) {
-  return std::all_of(names.begin(), names.end(), [&](const char* name) { return rows.has(name); });
+/// Every component that counts is there.
+bool has_all(const Record& rows, const Components& names, const Strain3& along) {
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (along[k] != 0 && !rows.has(names[k])) return false;
+  return true;
 }
 
-/// Unit tensor along the axis, times sqrt(3/2): its product with Q is sqrt(3 J2) of a Q that is along it.
+/// What the components of Q must be multiplied with: the unit tensor along the axis, times sqrt(3/2). The sum
+/// is sqrt(3 J2) of a Q that is along it.
 Strain3 projector(const Strain3& axis) {
-  const double factor = std::sqrt(1.5) / std::hypot(axis[0], axis[1], axis[2]);
-  return {factor * axis[0], factor * axis[1], factor * axis[2]};
+  double squares = 0;
+  for (std::size_t k = 0; k < 6; ++k) squares += (k < 3 ? 1 : 2) * axis[k] * axis[k];
+  const double factor = std::sqrt(1.5 / squares);
+  Strain3 product;
+  for (std::size_t k = 0; k < 6; ++k) product[k] = factor * (k < 3 ? 1 : 2) * axis[k];  // ab and ba
+  return product;
 }
 
 }  // namespace
@@ -25,12 +33,13 @@ Strain3 projector(const Strain3& axis) {
 ShearColumn shear_column(const TestRecord& test, std::size_t leg, const std::string& quantity) {
   const bool of_stress = quantity == "s_dev";
   const Components& names = of_stress ? stress : fabric;
-  if (!has_all(test.rows, names)) return {test.rows[quantity], false};
   const Strain3 along = projector(SignConvention(test.legs).axis(leg));
+  if (!has_all(test.rows, names, along)) return {test.rows[quantity], false};
   ShearColumn column{std::vector<double>(test.rows.rows(), 0.0), true};
   for (std::size_t i = 0; i < column.values.size(); ++i) {
     const double unit = of_stress ? test.rows["P"][i] : 1;
-    for (std::size_t k = 0; k < 3; ++k) column.values[i] += along[k] * test.rows[names[k]][i] / unit;
+    for (std::size_t k = 0; k < along.size(); ++k)
+      if (along[k] != 0) column.values[i] += along[k] * test.rows[names[k]][i] / unit;
   }
   return column;
 }

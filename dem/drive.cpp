@@ -9,17 +9,22 @@ namespace {
 constexpr std::uint64_t relax_check_interval = 100;  // steps between two looks at the energies
 }
 
+Drive::Drive(const Mat3& start_edges, const Leg& leg)
+    : start_(start_edges), strain_(matrix_of(leg.strain)), principal_{}, leg_(leg) {
+  if (!strain_.is_diagonal()) principal_ = spectrum(strain_);
+}
+
 Mat3 Drive::edges(double t) const {
   const double p = leg_.progress(t);
-  return Mat3::diagonal(
-             {std::exp(-leg_.strain[0] * p), std::exp(-leg_.strain[1] * p), std::exp(-leg_.strain[2] * p)}) *
-         start_;
+  const auto stretch = [p](double strain) { return std::exp(-strain * p); };
+  if (!strain_.is_diagonal()) return apply(principal_, stretch) * start_;
+  return Mat3::diagonal({stretch(strain_(0, 0)), stretch(strain_(1, 1)), stretch(strain_(2, 2))}) * start_;
 }
 
 Mat3 Drive::gradient(double t, double dt) const {
   const double from = std::max(t - 0.5 * dt, 0.0), to = std::min(t + 0.5 * dt, leg_.duration);
   const double speed = (leg_.progress(to) - leg_.progress(from)) / (to - from);
-  return Mat3::diagonal({-leg_.strain[0] * speed, -leg_.strain[1] * speed, -leg_.strain[2] * speed});
+  return -speed * strain_;
 }
 
 StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_steps) {

@@ -9,10 +9,11 @@
 
 namespace grainlaw::dem {
 
-/// The motion of the box along a leg: edges H(t) = exp(-strain progress(t)) H(0).
+/// The motion of the box along a leg: edges H(t) = exp(-strain progress(t)) H(0), a stretch without spin
+/// whose principal axes stay where they are.
 class Drive {
  public:
-  Drive(const Mat3& start_edges, const Leg& leg) : start_(start_edges), leg_(leg) {}
+  Drive(const Mat3& start_edges, const Leg& leg);
   /// H at time t of the leg, mm.
   Mat3 edges(double t) const;
   /// G at time t, averaged over t - dt/2 ... t + dt/2 within the leg, 1/us.
@@ -20,6 +21,8 @@ class Drive {
 
  private:
   Mat3 start_;
+  Mat3 strain_;         ///< of the whole leg, compression positive
+  Spectrum principal_;  ///< of `strain_`, where it is not diagonal
   Leg leg_;
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "grainlaw/dem/vec.hpp"
+#include "grainlaw/element/tensor.hpp"
 
 namespace grainlaw::dem {
 
@@ -64,6 +65,11 @@ constexpr Mat3 operator*(double s, const Mat3& a) {
 constexpr double determinant(const Mat3& a) {
   return a(0, 0) * a(1, 1) * a(2, 2) - a(0, 0) * a(1, 2) * a(2, 1) + a(0, 1) * a(1, 2) * a(2, 0) -
          a(0, 1) * a(1, 0) * a(2, 2) + a(0, 2) * a(1, 0) * a(2, 1) - a(0, 2) * a(1, 1) * a(2, 0);
+}
+
+/// A symmetric tensor as a matrix.
+constexpr Mat3 matrix_of(const Sym6& q) {
+  return {{q[0], q[5], q[4]}, {q[5], q[1], q[3]}, {q[4], q[3], q[2]}};
 }
 
 Mat3 inverse(const Mat3& a);

@@ -94,16 +94,16 @@ std::vector<Stage> plan_stages(const Scene& scene, double nu_start, const Longes
 void check_width(const std::vector<Stage>& stages, const State& start, const Scene& scene) {
   const double widest = 2 * *std::max_element(start.radius.begin(), start.radius.end()),
                least = widest + 0.02 * scene.material.r_mean;
-  Vec3 length = start.box.diagonal();
-  for (const Stage& stage : stages)
-    for (std::size_t c = 0; c < 3; ++c) {
-      length[c] *= std::exp(-stage.leg.strain[c]);
-      if (stage.segment && length[c] < least)
-        throw Error(scene.file, "path.segments[" + std::to_string(*stage.segment) + "]",
-                    "makes the box " + to_text(length[c]) + " mm wide, too narrow for a grain of diameter " +
-                        to_text(widest) + " mm (it would touch its own image); must stay >= " +
-                        to_text(least) + " mm: take more grains or less strain");
-    }
+  Mat3 edges = start.box;
+  for (const Stage& stage : stages) {
+    edges = Drive(edges, stage.leg).edges(stage.leg.duration);
+    const double narrowest = Cell(edges).narrowest();
+    if (stage.segment && narrowest < least)
+      throw Error(scene.file, "path.segments[" + std::to_string(*stage.segment) + "]",
+                  "makes the box " + to_text(narrowest) + " mm wide, too narrow for a grain of diameter " +
+                      to_text(widest) + " mm (it would touch its own image); must stay >= " + to_text(least) +
+                      " mm: take more grains or less strain");
+  }
 }
 
 }  // namespace grainlaw::dem

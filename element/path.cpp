@@ -21,17 +21,22 @@ const Range any_strain = between(-100, 100), any_rate = above_up_to(0, 1e6),
 constexpr Strain3 axis_d2{-1, 1, 0};
 constexpr Strain3 axis_uni{-0.5, -0.5, 1};
 
-double dot(const Strain3& a, const Strain3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+/// a : b
+double dot(const Strain3& a, const Strain3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
+}
 
 Strain3 deviator(const Strain3& e) {
   const double mean = (e[0] + e[1] + e[2]) / 3;
-  return {e[0] - mean, e[1] - mean, e[2] - mean};
+  return {e[0] - mean, e[1] - mean, e[2] - mean, e[3], e[4], e[5]};
 }
 
-double magnitude(const Strain3& e) { return deviator_magnitude({e[0], e[1], e[2], 0, 0, 0}); }
+double magnitude(const Strain3& e) { return deviator_magnitude(e); }
 
 bool has_deviator(const Strain3& e) {
-  return magnitude(e) > 1e-12 * (std::abs(e[0]) + std::abs(e[1]) + std::abs(e[2]));
+  double sum = 0;
+  for (const double component : e) sum += std::abs(component);
+  return magnitude(e) > 1e-12 * sum;
 }
 
 /// The axis of a strain (see SignConvention); `before` is the axis in force, if any.
@@ -85,11 +90,11 @@ void read_relax(Reader& reader, Segment& segment) {
 
 void read_strain(Reader& reader, Segment& segment) {
   const auto strain = reader.numbers("strain", any_strain, 3);
-  if (strain.size() != 3)
-    reader.fail("strain", "must be three numbers [xx, yy, zz], got " + std::to_string(strain.size()) +
-                              " (the box is orthorhombic, shear components cannot be prescribed)");
+  if (strain.size() != 3 && strain.size() != 6)
+    reader.fail("strain", "must be three numbers [xx, yy, zz] or six [xx, yy, zz, yz, xz, xy], got " +
+                              std::to_string(strain.size()));
   std::copy(strain.begin(), strain.end(), segment.strain.begin());
-  if (segment.strain == Strain3{}) reader.fail("strain", "must not be zero, got [0, 0, 0]");
+  if (segment.strain == Strain3{}) reader.fail("strain", "must not be zero");
 }
 
 void read_amount(Reader& reader, Segment& segment) {
@@ -180,7 +185,18 @@ Strain3 strain_of(const Segment& segment, double nu, double eps_vol, double eps_
 }
 
 /// The mode's own strain (the number `rate` multiplies): the largest component.
-double largest(const Strain3& e) { return std::max({std::abs(e[0]), std::abs(e[1]), std::abs(e[2])}); }
+double largest(const Strain3& e) {
+  double most = 0;
+  for (const double component : e) most = std::max(most, std::abs(component));
+  return most;
+}
+
+/// Three numbers where the axes stay orthogonal, else six.
+Json strain_json(const Strain3& e) {
+  Json list = Json::array({e[0], e[1], e[2]});
+  if (e[3] != 0 || e[4] != 0 || e[5] != 0) list.insert(list.end(), {e[3], e[4], e[5]});
+  return list;
+}
 
 Json start_json(const Start& start) {
   Json json = Json::object();
@@ -207,7 +223,7 @@ Json segment_json(const Segment& segment) {
   if (segment.to_eps_vol) json["controls"] = {{"eps_vol", *segment.to_eps_vol}};
   if (segment.to_eps_dev) json["controls"] = {{"eps_dev", *segment.to_eps_dev}};
   if (segment.amount) json["amount"] = *segment.amount;
-  if (segment.mode == Mode::components) json["strain"] = segment.strain;
+  if (segment.mode == Mode::components) json["strain"] = strain_json(segment.strain);
   if (segment.rate) json["rate"] = *segment.rate;
   if (segment.duration) json["duration"] = *segment.duration;
   json["profile"] = name_of(segment.profile);
@@ -331,7 +347,7 @@ SignConvention::SignConvention(const std::vector<Leg>& legs) : axes_(legs.size()
 
 double SignConvention::signed_deviator(const Sym6& q, std::size_t leg) const {
   const Strain3& axis = axes_.at(leg);
-  return std::copysign(deviator_magnitude(q), dot({q[0], q[1], q[2]}, axis));
+  return std::copysign(deviator_magnitude(q), dot(q, axis));
 }
 
 }  // namespace grainlaw

@@ -18,8 +18,8 @@ enum class Profile { constant, cosine };
 std::string name_of(Mode mode);
 std::string name_of(Profile profile);
 
-/// Diagonal logarithmic strain, compression positive.
-using Strain3 = std::array<double, 3>;
+/// Logarithmic strain, compression positive: tensor components xx, yy, zz, yz, xz, xy.
+using Strain3 = Sym6;
 
 /// Start of a path; what is not given comes from the parameter set (law) or is measured (DEM).
 struct Start {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "grainlaw/dem/drive.hpp"
 #include "grainlaw/element/error.hpp"
 #include "packings.hpp"
 
@@ -228,6 +229,33 @@ TEST(TiltedCell, D2IsPureShearInAFrameTurnedBy45Degrees) {
   expect_near(there.kinetic_stress, turned(here.kinetic_stress, turn), 1e-9);
   EXPECT_NEAR(trace(there.stress) / trace(here.stress), 1, 1e-10);
   EXPECT_NEAR(deviator_magnitude(there.stress) / deviator_magnitude(here.stress), 1, 1e-8);
+}
+
+TEST(TiltedCell, ALegOfD2IsOneOfShearComponentsInATurnedFrame) {
+  const Material m;
+  const State state = test::squeezed(m, 100, 35, 0.75);
+  const Mat3 turn = test::rotation({0, 0, 1}, std::numbers::pi / 4);
+  Leg d2{};
+  d2.strain = {-0.01, 0.01, 0};
+  d2.duration = 3;
+  Leg shear = d2;
+  shear.strain = {0, 0, 0, 0, 0, -0.01};
+  Dynamics here(m, state), there(m, turned(state, turn));
+  const StepPlan plan = plan_steps(d2, 0.01, 1);
+  drive(here, d2, plan);
+  drive(there, shear, plan);
+  const Measurement a = here.measure(), b = there.measure();
+  expect_near(b.stress, turned(a.stress, turn), 1e-9);
+  EXPECT_NEAR(deviator_magnitude(b.stress) / deviator_magnitude(a.stress), 1, 1e-8);
+  EXPECT_NEAR(b.nu, a.nu, 1e-14);
+  // The strain of a leg is what the box says, in a box of any shape.
+  Dynamics skew(m, with_edges(state, {{1, 2, -3}, {0, 1, 1}, {0, 0, 1}}));
+  Leg any = d2;
+  any.strain = {0.01, -0.02, 0.005, 0.01, -0.03, 0.02};
+  const Mat3 before = skew.cell().edges();
+  drive(skew, any, plan);
+  const Sym6 strain = skew.cell().strain_from(before);
+  for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(strain[c], any.strain[c], 1e-13) << c;
 }
 
 TEST(TiltedCell, AxisPermutation) {

@@ -46,6 +46,25 @@ const char* const small_scene = R"({
   "measure": {"rows": 10, "snapshots": [{"segment": 0, "nu": 0.7}, {"segment": 1}, {"segment": 2, "eps_dev": 0.03}]}
 })";
 
+TEST_F(ElementTest, ShearComponentsTiltTheBox) {
+  const Scene scene = scene_of(R"({
+    "preparation": {"count": 50, "seed": 3, "rate": 1e-3, "relax": {"duration": 50}},
+    "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.75}, "rate": 1e-3},
+      {"mode": "components", "strain": [0, 0, 0, 0, 0, 0.1], "rate": 1e-3}]},
+    "measure": {"rows": 5, "snapshots": [{"segment": 1}]}})");
+  run_element_test(scene, dir);
+  const Record r = Record::read_csv(dir / "record.csv", record_columns());
+  EXPECT_NEAR(r["eps_dev"][10], 0.1 * std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(r["nu"][10], 0.75, 1e-12);
+  EXPECT_GT(r["sxy"][10], 0.02);  // compression positive, stress as strain
+  EXPECT_GT(r["sigma_dev"][10], 0.03);
+  EXPECT_GT(r["Fxy"][10], 0);
+  const State end = read_frame(dir / "snapshots.h5", {});
+  EXPECT_NEAR(end.box(0, 1) / end.box(0, 0), -std::tanh(0.1), 1e-12);
+  EXPECT_NEAR(end.box(1, 0), end.box(0, 1), 1e-12);
+  EXPECT_EQ(end.box(0, 2), 0);
+}
+
 TEST_F(ElementTest, RecordOfAllModes) {
   const RunSummary summary = run_element_test(scene_of(small_scene), dir);
   EXPECT_FALSE(summary.stopped);

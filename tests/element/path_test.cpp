@@ -104,8 +104,10 @@ TEST(Path, RefusesWhatCannotBe) {
   EXPECT_THAT(refused_segment(R"({"mode": "iso", "amount": 3})"),
               testing::HasSubstr("it must stay > 0 and < 1"));
   EXPECT_THAT(refused_segment(R"({"mode": "shear"})"), testing::HasSubstr("must be one of iso, uni"));
-  EXPECT_THAT(refused_segment(R"({"mode": "components", "strain": [1, 2, 3, 4, 5, 6]})"),
-              testing::HasSubstr("three numbers"));
+  EXPECT_THAT(refused_segment(R"({"mode": "components", "strain": [1, 2, 3, 4]})"),
+              testing::HasSubstr("three numbers [xx, yy, zz] or six [xx, yy, zz, yz, xz, xy], got 4"));
+  EXPECT_THAT(refused_segment(R"({"mode": "components", "strain": [0, 0, 0, 0, 0, 0]})"),
+              testing::HasSubstr("must not be zero"));
   EXPECT_THAT(refused_segment(R"({"mode": "relax", "rate": 1})"), testing::HasSubstr("unknown key"));
   EXPECT_THAT(
       refused_segment(R"({"repeat": 1000000, "segments": [{"mode": "d2", "amount": 0.1, "repeat": 1000}]})"),
@@ -135,11 +137,32 @@ TEST(SignConvention, ReversalByComponentsKeepsTheAxis) {
   EXPECT_LT(legs[2].eps_dev[1], 0);  // along D2's axis, backwards
 }
 
+TEST(Path, SixComponentsOfStrain) {
+  const Path path = path_of(R"({"segments": [{"mode": "components", "strain": [0, 0, 0, 0, 0, 0.1]},
+      {"mode": "components", "strain": [0.1, 0.2, 0, 0.3, 0, -0.1]}, {"mode": "components", "strain": [0.1, 0, 0, 0, 0, 0]}]})");
+  const auto legs = path.legs(0.6);
+  EXPECT_EQ(legs[1].strain, (Strain3{0.1, 0.2, 0, 0.3, 0, -0.1}));
+  EXPECT_NEAR(legs[0].duration, 0.1 / 2.839e-5, 1e-9);  // by its largest component
+  // Pure shear: the magnitude of D2 with the same principal strains, 0.1 and -0.1.
+  EXPECT_NEAR(legs[0].eps_dev[1], 0.1 * std::sqrt(3.0), 1e-15);
+  EXPECT_EQ(legs[0].eps_vol[1], 0);
+  EXPECT_NEAR(legs[1].eps_vol[1], 0.3, 1e-15);
+  const SignConvention sign(legs);
+  EXPECT_DOUBLE_EQ(sign.signed_deviator({1, 1, 1, 0, 0, 0.5}, 0), 0.5 * std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(sign.signed_deviator({1, 1, 1, 0, 0, -0.5}, 0), -0.5 * std::sqrt(3.0));
+  const Json written = path.to_json();
+  EXPECT_EQ(written["segments"][0]["strain"].size(), 6u);
+  EXPECT_EQ(written["segments"][2]["strain"].size(), 3u);
+  EXPECT_EQ(Path::read({written, "p.json"}).to_json(), written);
+}
+
 TEST(Path, CoaxialModes) {
   EXPECT_TRUE(coaxial({0, 0, 1}, {-0.5, -0.5, 1}));  // UNI and D3
   EXPECT_TRUE(coaxial({-1, 1, 0}, {1, -1, 0}));
   EXPECT_TRUE(coaxial({1, 1, 1}, {-1, 1, 0}));  // ISO has no axis
   EXPECT_FALSE(coaxial({-1, 1, 0}, {0, 0, 1}));
+  EXPECT_FALSE(coaxial({-1, 1, 0}, {0, 0, 0, 0, 0, 1}));
+  EXPECT_TRUE(coaxial({1, 1, 1, 0, 0, -0.5}, {0, 0, 0, 0, 0, 1}));
 }
 
 }  // namespace
