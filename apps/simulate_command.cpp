@@ -9,12 +9,14 @@
 
 #include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/apps/commands.hpp"
+#include "grainlaw/apps/explain.hpp"
 #include "grainlaw/apps/interrupt.hpp"
 #include "grainlaw/apps/locations.hpp"
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/calibrate/lock_file.hpp"
 #include "grainlaw/dem/checkpoint.hpp"
 #include "grainlaw/dem/element_test.hpp"
+#include "grainlaw/dem/observe/names.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::apps {
@@ -26,6 +28,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::string scene, output;
   RunArguments run;
+  bool explain = false;
 };
 
 /// The folder as an absolute path without "." and "/" at its end, so that names can be put after it.
@@ -50,6 +53,8 @@ void remove_leftover(const fs::path& part) {
     for (const std::string_view file :
          {"scene.json", "snapshots.h5", "provenance.json", "record.csv", "rows.csv", "checkpoint."})
       ours = ours || name.starts_with(file);
+    for (const std::string& table : dem::observe::tables(dem::observe::names()))
+      ours = ours || name.starts_with(table);
     if (!ours)
       throw Error(part.string(), "",
                   "is in the way: it holds \"" + name + "\", which is no part of a record");
@@ -94,6 +99,12 @@ int run(const Arguments& arguments) {
   arguments.run.force_simd();
   arguments.run.checkpoint_every();  // bad input is refused before anything is made
   const dem::Scene scene = dem::Scene::load(arguments.scene);
+  if (arguments.explain) {
+    write_stdout(explanation(scene, dem::cost_of(scene)));
+    return all_well;
+  }
+  if (arguments.output.empty())
+    throw Error("simulate: -o DIR is missing, the directory to make; or --explain, to make none");
   const fs::path folder = folder_of(arguments.output), part = folder.string() + ".part";
   check_free(folder, arguments.output);
   fs::create_directories(folder.parent_path());
@@ -131,13 +142,15 @@ Action add_simulate(CLI::App& program) {
   command->add_option("SCENE.json", arguments->scene, "material, preparation, path and measure of the test")
       ->required();
   command->add_option("-o,--output", arguments->output, "directory to make; must not exist or be empty")
-      ->type_name("DIR")
-      ->required();
+      ->type_name("DIR");
+  command->add_flag("--explain", arguments->explain,
+                    "only say what the scene turns on and what it will take, from a trial on this machine");
   arguments->run.add_to(*command, "go on where an interrupted run stopped");
   command->footer(
       "Examples:\n"
       "  grainlaw simulate data/scenes/d2.json -o out/d2\n"
-      "  grainlaw simulate data/scenes/d2.json -o out/d2 --resume");
+      "  grainlaw simulate data/scenes/d2.json -o out/d2 --resume\n"
+      "  grainlaw simulate data/scenes/d2.json --explain");
   return [arguments] { return run(*arguments); };
 }
 

@@ -1,6 +1,7 @@
 #include "grainlaw/calibrate/kept_record.hpp"
 
 #include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/dem/observe/names.hpp"
 #include "grainlaw/dem/scene.hpp"
 #include "grainlaw/dem/snapshot.hpp"
 #include "grainlaw/element/error.hpp"
@@ -34,11 +35,18 @@ void check_kept_record(const fs::path& dir, const Json& planned) {
     check_files(dir);
     const dem::Scene wanted = dem::Scene::read(Reader(planned, dir.filename().string()), dir);
     const std::string scene = (dir / "scene.json").string();
-    if (const auto differs = first_difference(load_json(scene), wanted.to_json(dir)); !differs.empty())
+    // Read and written anew: a record of an earlier version lacks the keys that came since, and their
+    // defaults are what it was run with.
+    const dem::Scene kept = dem::Scene::read(Reader(load_json(scene), scene), dir);
+    if (const auto differs = first_difference(kept.to_json(dir), wanted.to_json(dir)); !differs.empty())
       throw Error(scene, "", "is another scene than the campaign's (" + differs + ")");
     load_json(dir / "provenance.json");
     const std::string table = (dir / "record.csv").string();
-    const Record record = Record::read_csv(table, record_columns());
+    std::vector<std::string> columns = record_columns();
+    for (const auto& column : dem::observe::columns(wanted.measure.observe)) columns.push_back(column);
+    const Record record = Record::read_csv(table, columns);
+    for (const auto& file : dem::observe::tables(wanted.measure.observe))
+      Record::read_csv(dir / file, {"row"});
     if (record.rows() != wanted.record_rows())
       throw Error(table, "",
                   "must have " + std::to_string(wanted.record_rows()) + " rows, got " +

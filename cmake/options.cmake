@@ -50,9 +50,13 @@ function(grainlaw_quick_to_compile target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# grainlaw_library(room): the sources of this folder as grainlaw::room.
+# grainlaw_library(room FOLDERS): the sources of this folder, and of these within it, as grainlaw::room.
 function(grainlaw_library room)
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  set(patterns ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  foreach(folder ${ARGN})
+    list(APPEND patterns ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  endforeach()
+  file(GLOB sources CONFIGURE_DEPENDS ${patterns})
   add_library(grainlaw_${room} STATIC ${sources})
   add_library(grainlaw::${room} ALIAS grainlaw_${room})
   set_target_properties(grainlaw_${room} PROPERTIES EXPORT_NAME ${room})

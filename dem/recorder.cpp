@@ -9,7 +9,9 @@
 namespace grainlaw::dem {
 
 Recorder::Recorder(const Scene& scene, std::filesystem::path dir, double nu_start)
-    : dir_(std::move(dir)), nu_start_(nu_start), rows_(scene.material, scene.legs(nu_start), nu_start) {}
+    : dir_(std::move(dir)),
+      nu_start_(nu_start),
+      rows_(scene.material, scene.legs(nu_start), nu_start, scene.measure.observe) {}
 
 Recorder::Recorder(const Scene& scene, std::filesystem::path dir, double nu_start, ArchiveReader& archive)
     : Recorder(scene, std::move(dir), nu_start) {
@@ -22,7 +24,7 @@ Recorder::Recorder(const Scene& scene, std::filesystem::path dir, double nu_star
 
 void Recorder::begin_path(const Dynamics& dynamics) {
   path_begin_ = dynamics.time();
-  rows_.append(dynamics.measure(), 0, 0, 0);
+  rows_.append(dynamics, 0, 0, 0);
 }
 
 void Recorder::enter(const Dynamics& dynamics, const Stage& stage, std::uint64_t taken) {
@@ -58,7 +60,7 @@ void Recorder::flush() const {
 }
 
 void Recorder::write_row(const Dynamics& dynamics, const Stage& stage, double progress) {
-  rows_.append(dynamics.measure(), stage.segment.value(), progress, dynamics.time() - path_begin_);
+  rows_.append(dynamics, stage.segment.value(), progress, dynamics.time() - path_begin_);
 }
 
 void Recorder::take_snapshot(const Dynamics& dynamics, const Stage& stage, double progress) {

@@ -38,6 +38,7 @@ class Recorder {
   /// Brings all snapshots to the disk, and the rows so far into rows.csv.
   void flush() const;
   const Record& record() const { return rows_.record(); }
+  const std::vector<observe::Table>& tables() const { return rows_.tables(); }
   std::vector<std::string> warnings() const { return rows_.warnings(); }
 
   template <class Self, class Archive>

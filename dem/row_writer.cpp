@@ -29,11 +29,21 @@ class Row {
   void set(const std::array<const char*, 6>& columns, const Sym6& tensor, double factor) {
     for (std::size_t c = 0; c < 6; ++c) set(columns[c], factor * tensor[c]);
   }
-  const std::vector<double>& values() const { return values_; }
+  /// The row, with what observers add after it.
+  std::vector<double> with(const std::vector<double>& more) const {
+    std::vector<double> all = values_;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
 
  private:
   std::vector<double> values_;
 };
+
+std::vector<std::string> with(std::vector<std::string> columns, const std::vector<std::string>& more) {
+  columns.insert(columns.end(), more.begin(), more.end());
+  return columns;
+}
 
 std::string short_text(double x) {
   std::array<char, 32> text{};
@@ -43,8 +53,14 @@ std::string short_text(double x) {
 
 }  // namespace
 
-RowWriter::RowWriter(const Material& material, const std::vector<Leg>& legs, double nu_start)
-    : material_(material), legs_(legs), sign_(legs), nu_start_(nu_start), record_(record_columns()) {}
+RowWriter::RowWriter(const Material& material, const std::vector<Leg>& legs, double nu_start,
+                     const std::vector<std::string>& observe)
+    : material_(material),
+      legs_(legs),
+      sign_(legs),
+      nu_start_(nu_start),
+      observers_(observe),
+      record_(with(record_columns(), observers_.columns())) {}
 
 double RowWriter::eps_vol(const Measurement& m) const { return std::log(m.nu / nu_start_); }
 
@@ -53,14 +69,16 @@ double RowWriter::eps_dev(std::size_t segment, double progress) const {
   return leg.eps_dev[0] + progress * (leg.eps_dev[1] - leg.eps_dev[0]);
 }
 
-void RowWriter::append(const Measurement& m, std::size_t segment, double progress, double time) {
+void RowWriter::append(const Dynamics& dynamics, std::size_t segment, double progress, double time) {
+  const std::vector<Quad> velocity = dynamics.velocities();
+  const Measurement m =
+      measure(dynamics.law(), dynamics.grains(), velocity, dynamics.cell(), dynamics.neighbours().pairs());
   if (!std::isfinite(m.kinetic) || !std::isfinite(m.elastic))
     throw Error("the motion of the grains became unstable at nu = " + to_text(m.nu) +
                 ", t = " + to_text(time) + " us; take a smaller measure.time_step or rate");
   const double per_unit = 1 / material_.stress_unit();
   const double pressure = trace(m.stress) / 3 * per_unit;
   const double shear = sign_.signed_deviator(m.stress, segment) * per_unit;
-  const double ratio = m.elastic > 0 ? m.kinetic / m.elastic : undefined;
   Row row;
   row.set("segment", static_cast<double>(segment));
   row.set("eps_vol", eps_vol(m));
@@ -75,32 +93,23 @@ void RowWriter::append(const Measurement& m, std::size_t segment, double progres
   row.set("C_star", m.C_star);
   row.set("f_NR", m.f_NR);
   row.set("t", time);
-  row.set("Ek_over_Ep", ratio);
+  row.set("Ek_over_Ep", m.elastic > 0 ? m.kinetic / m.elastic : undefined);
   row.set({"sxx", "syy", "szz", "syz", "sxz", "sxy"}, m.stress, per_unit);
   row.set({"Fxx", "Fyy", "Fzz", "Fyz", "Fxz", "Fxy"}, m.fabric, 1);
-  record_.append(row.values());
+  record_.append(
+      row.with(observers_.observe(dynamics, velocity, m, material_, sign_, segment, record_.rows())));
+  watch(m, pressure);
+}
+
+void RowWriter::watch(const Measurement& m, double pressure) {
   if (pressure < bearing_pressure || !(m.elastic > 0)) return;
+  const double ratio = m.kinetic / m.elastic;
   ++bearing_;
   if (ratio > quasi_static) ++restless_;
   if (ratio > 1) ++violent_;
   if (ratio > worst_ratio_) {
     worst_ratio_ = ratio;
     worst_nu_ = m.nu;
-  }
-}
-
-std::vector<std::vector<double>> RowWriter::columns() const {
-  std::vector<std::vector<double>> columns;
-  for (const auto& name : record_.columns()) columns.push_back(record_[name]);
-  return columns;
-}
-
-void RowWriter::set_columns(const std::vector<std::vector<double>>& columns) {
-  record_ = Record(record_.columns());
-  for (std::size_t row = 0; row < columns.at(0).size(); ++row) {
-    std::vector<double> values;
-    for (const auto& column : columns) values.push_back(column.at(row));
-    record_.append(values);
   }
 }
 

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "grainlaw/dem/observe/names.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/words.hpp"
 
 namespace grainlaw::dem {
 
@@ -39,6 +41,15 @@ SnapshotRequest read_request(Reader& reader) {
     reader.fail("eps_dev", "redundant: nu already says where in the segment; give one");
   reader.finish();
   return request;
+}
+
+/// In the order of their columns.
+std::vector<std::string> read_observers(Reader& reader, const std::vector<std::string>& fallback) {
+  const std::vector<std::string>& known = observe::names();
+  std::vector<std::string> asked = read_words(reader, "observe", known, fallback);
+  const auto rank = [&](const std::string& name) { return std::find(known.begin(), known.end(), name); };
+  std::sort(asked.begin(), asked.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  return asked;
 }
 
 /// A DEM measures these at the start; only nu can be chosen.
@@ -185,6 +196,7 @@ Measure Measure::read(Reader reader, const Measure& fallback) {
   measure.time_step = reader.number("time_step", above_up_to(0, largest_step), fallback.time_step);
   measure.time_step_gas =
       reader.number("time_step_gas", above_up_to(0, largest_step), fallback.time_step_gas);
+  measure.observe = read_observers(reader, fallback.observe);
   reader.finish();
   return measure;
 }
@@ -197,7 +209,11 @@ Json Measure::to_json() const {
     if (request.eps_dev) item["eps_dev"] = *request.eps_dev;
     list.push_back(item);
   }
-  return {{"rows", rows}, {"snapshots", list}, {"time_step", time_step}, {"time_step_gas", time_step_gas}};
+  return {{"rows", rows},
+          {"snapshots", list},
+          {"time_step", time_step},
+          {"time_step_gas", time_step_gas},
+          {"observe", observe}};
 }
 
 Scene Scene::read(Reader reader, const std::filesystem::path& scene_dir) {

@@ -7,6 +7,7 @@
 
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
+#include "grainlaw/element/words.hpp"
 
 namespace grainlaw {
 
@@ -37,26 +38,6 @@ std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
-}
-
-bool same_letter(char a, char b) {
-  return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-}
-
-/// Number of single-letter edits between two keys (Levenshtein); a letter's case does not count, so that "W"
-/// is nearer to "w" than to "k".
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replace = diagonal + (same_letter(a[i - 1], b[j - 1]) ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replace});
-    }
-  }
-  return row[b.size()];
 }
 
 }  // namespace
@@ -246,12 +227,8 @@ void Reader::optional(std::initializer_list<std::string_view> keys) {
 void Reader::finish() const {
   for (const auto& [name, value] : object_->items()) {
     if (known_.contains(name)) continue;
-    std::string nearest;
-    for (const auto& known : known_)
-      if (nearest.empty() || distance(known, name) < distance(nearest, name)) nearest = known;
-    const bool close =
-        !nearest.empty() && distance(nearest, name) <= std::max<std::size_t>(1, name.size() / 3);
-    if (close) fail(name, "unknown key, did you mean " + nearest + "?");
+    const std::string nearest = nearest_word(name, {known_.begin(), known_.end()});
+    if (!nearest.empty()) fail(name, "unknown key, did you mean " + nearest + "?");
     fail(name, known_.empty() ? "unknown key, none is expected here"
                               : "unknown key, known are " + listed({known_.begin(), known_.end()}));
   }

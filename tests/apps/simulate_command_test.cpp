@@ -42,6 +42,29 @@ TEST_F(Simulate, WritesARecord) {
                       {"out/x: is not empty, and nothing in it is overwritten"}));
 }
 
+TEST_F(Simulate, ExplainsAndMakesNothing) {
+  std::string json = scene("200");
+  json.insert(json.find("\"rows\""), R"("observe": ["percolation"], )");
+  json.insert(json.find("\"preparation\""), R"("material": {"gamma_b": 0}, )");
+  write("s.json", json);
+  const Outcome outcome = run({"simulate", "s.json", "--explain"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("s.json: 64 grains, w = 3"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("gamma d\\(delta\\)/dt +on, 1000 ug/us"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("gamma_b v +off"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("compress the gas +0.3 to 0.64"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("iso \\(1 of 1\\) +0.64 to 0.7"));
+  EXPECT_THAT(outcome.out, HasSubstr("measured in 11 rows"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("percolation +[0-9]"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("in all: .* particle-steps, .* of one core"));
+  EXPECT_THAT(listing("."), ElementsAre("s.json"));
+}
+
+TEST_F(Simulate, NeedsAFolder) {
+  write("s.json", scene("200"));
+  EXPECT_TRUE(refuses(run({"simulate", "s.json"}), {"-o DIR is missing"}));
+}
+
 TEST_F(Simulate, InterruptedItSaysHowToGoOn) {
   const auto running = start_long();
   running->send(SIGINT);

@@ -327,6 +327,19 @@ TEST_F(RunCampaign, AKeptRecordMustBeWholeAndOfItsScene) {
               AllOf(HasSubstr("d2-0.7-s1/scene.json: is another scene than the campaign's (preparation.nu: "
                               "0.75 there, 0.7 here)")));
   EXPECT_THAT(refusal([&] { write_file(records / "iso-s1/provenance.json", "{"); }), HasSubstr("; remove "));
+  // A record of an earlier version, which knew no observers, is as good.
+  EXPECT_EQ(refusal([&] {
+              Json scene = load_json(records / "iso-s1/scene.json");
+              scene["measure"].erase("observe");
+              write_file(records / "iso-s1/scene.json", scene.dump());
+            }),
+            "accepted");
+  EXPECT_THAT(refusal([&] {
+                Json scene = load_json(records / "iso-s1/scene.json");
+                scene["measure"]["observe"] = {"contacts"};
+                write_file(records / "iso-s1/scene.json", scene.dump());
+              }),
+              HasSubstr("is another scene than the campaign's (measure.observe"));
   // Snapshots count only where a test has yet to start from them.
   EXPECT_EQ(refusal([&] { fs::remove(records / "iso-s1/snapshots.h5"); }), "accepted");
   EXPECT_TRUE(ran.empty());

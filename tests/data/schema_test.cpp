@@ -6,6 +6,7 @@
 #include <set>
 
 #include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/provenance.hpp"
 #include "grainlaw/dem/scene.hpp"
 #include "grainlaw/element/json.hpp"
@@ -95,9 +96,22 @@ TEST(Schema, KeysOfProvenance) {
   EXPECT_EQ(file["required"].get<std::vector<std::string>>(), keys(written));
 }
 
+TEST(Schema, Observers) {
+  const Json known = schema("scene")["$defs"]["measure"]["properties"]["observe"]["items"]["enum"];
+  EXPECT_EQ(known.get<std::vector<std::string>>(), dem::observe::names());
+  const dem::observe::Observers all(dem::observe::names());
+  for (const auto& table : all.tables()) {
+    const Json file = schema(table.file.substr(0, table.file.find('.')));
+    EXPECT_EQ(keys(file["properties"]), table.rows.columns()) << table.file;
+    EXPECT_EQ(file["required"].get<std::vector<std::string>>(), table.rows.columns()) << table.file;
+  }
+}
+
 TEST(Schema, ColumnsOfARecord) {
   const Json file = schema("record");
-  EXPECT_EQ(keys(file["properties"]), record_columns());
+  auto columns = record_columns();
+  for (const auto& column : dem::observe::columns(dem::observe::names())) columns.push_back(column);
+  EXPECT_EQ(keys(file["properties"]), columns);
   EXPECT_EQ(file["required"].get<std::vector<std::string>>(), prediction_columns());
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "grainlaw/dem/observe/names.hpp"
 #include "grainlaw/dem/snapshot.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
@@ -135,6 +136,41 @@ TEST_F(ElementTest, SameSceneSameBitsWhateverIsWritten) {
     EXPECT_EQ(coarse["P"][k], fine["P"][2 * k]);
     EXPECT_EQ(coarse["Ek_over_Ep"][k], fine["Ek_over_Ep"][2 * k]);
   }
+}
+
+TEST_F(ElementTest, ObserversAddColumnsAndTablesAndChangeNothingElse) {
+  const char* const text =
+      R"({"preparation": {"count": 60, "seed": 5, "rate": 1e-3, "relax": {"duration": 50}},
+    "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.7}, "rate": 5e-4},
+                          {"mode": "d2", "amount": 0.02, "rate": 5e-4}]},
+    "measure": {"rows": 5, "observe": %OBSERVE%}})";
+  const auto with = [&](const std::string& names, const std::string& name) {
+    std::string json = text;
+    json.replace(json.find("%OBSERVE%"), 9, names);
+    run_element_test(scene_of(json), dir / name);
+    return Record::read_csv(dir / name / "record.csv");
+  };
+  std::string all;
+  for (const auto& name : observe::names()) all = "\"" + name + "\"" + (all.empty() ? "" : ", ") + all;
+  const Record bare = with("[]", "bare"), seen = with("[" + all + "]", "seen");
+  EXPECT_EQ(bare.columns(), record_columns());
+  auto columns = record_columns();
+  for (const auto& column : observe::columns(observe::names())) columns.push_back(column);
+  EXPECT_EQ(seen.columns(), columns);
+  for (const auto& column : record_columns())
+    for (std::size_t row = 0; row < bare.rows(); ++row)
+      EXPECT_TRUE(bare[column][row] == seen[column][row] ||
+                  (std::isnan(bare[column][row]) && std::isnan(seen[column][row])))
+          << column << " in row " << row;
+  EXPECT_TRUE(std::isnan(seen["D2_min"][0]));
+  EXPECT_GT(seen["D2_min"][1], 0);
+  for (const auto& file : observe::tables(observe::names())) {
+    EXPECT_FALSE(fs::exists(dir / "bare" / file));
+    const Record table = Record::read_csv(dir / "seen" / file);
+    EXPECT_EQ(table["row"].back(), static_cast<double>(seen.rows() - 1)) << file;
+  }
+  with("[" + all + "]", "again");
+  EXPECT_EQ(read_file(dir / "seen" / "record.csv"), read_file(dir / "again" / "record.csv"));
 }
 
 TEST_F(ElementTest, ContinuesFromASnapshot) {

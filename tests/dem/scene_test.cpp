@@ -2,6 +2,7 @@
 // input.
 #include "grainlaw/dem/scene.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -44,7 +45,8 @@ TEST(Scene, DefaultsAreThoseOfTheDocumentation) {
   EXPECT_EQ(
       json["preparation"].dump(),
       R"({"count":1000,"seed":1,"nu_gas":0.3,"speed":0.02,"nu":0.64,"rate":0.0002,"relax":{"tolerance":1e-06,"duration":2000.0}})");
-  EXPECT_EQ(json["measure"].dump(), R"({"rows":100,"snapshots":[],"time_step":0.1,"time_step_gas":0.05})");
+  EXPECT_EQ(json["measure"].dump(),
+            R"({"rows":100,"snapshots":[],"time_step":0.1,"time_step_gas":0.05,"observe":[]})");
   EXPECT_EQ(json["path"]["segments"].size(), 1u);
 }
 
@@ -337,6 +339,23 @@ TEST(MeasureRead, FallsBackToAnother) {
   ASSERT_EQ(measure.snapshots.size(), 1u);
   const Json none = parse_json(R"({"snapshots": []})", "a.json");
   EXPECT_TRUE(Measure::read(Reader(none, "a.json"), fallback).snapshots.empty());
+}
+
+TEST(Scene, ObserversAreKeptInTheOrderOfTheirColumns) {
+  const auto with = [](const std::string& names) {
+    const std::string json =
+        R"({"path": {"segments": [{"mode": "iso", "amount": 0.1}]}, "measure": {"observe": )" + names + "}}";
+    return Scene::read(Reader(parse_json(json, "s.json"), "s.json"), "").to_json()["measure"]["observe"];
+  };
+  EXPECT_EQ(with(R"(["nonaffine", "contacts"])"), Json::parse(R"(["contacts", "nonaffine"])"));
+  EXPECT_EQ(with("[]"), Json::array());
+  try {
+    with(R"(["contacts", "percolaton"])");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.key(), "measure.observe[1]");
+    EXPECT_THAT(error.what(), testing::HasSubstr("did you mean percolation?"));
+  }
 }
 
 }  // namespace

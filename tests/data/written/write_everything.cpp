@@ -9,6 +9,7 @@
 #include "../documents.hpp"
 #include "grainlaw/calibrate/campaign.hpp"
 #include "grainlaw/dem/element_test.hpp"
+#include "grainlaw/dem/observe/names.hpp"
 #include "grainlaw/dem/scene.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/json.hpp"
@@ -57,10 +58,11 @@ void run_element_tests(const fs::path& dir) {
                           {"mode": "relax", "duration": 20}, {"mode": "d2", "amount": 0.01, "rate": 1e-3}]},
     "measure": {"rows": 10, "snapshots": [{"segment": 2}]}})");
   dem::run_element_test(dem::Scene::read(Reader(first, "first"), dir), dir / "first");
-  const Json second = Json::parse(R"({
+  Json second = Json::parse(R"({
     "preparation": {"snapshot": "first/snapshots.h5"},
     "path": {"segments": [{"mode": "d3", "amount": 0.01, "rate": 1e-3}]},
     "measure": {"rows": 3}})");
+  for (const auto& name : dem::observe::names()) second["measure"]["observe"].push_back(name);
   dem::run_element_test(dem::Scene::read(Reader(second, "second"), dir), dir / "second");
 }
 

@@ -1,0 +1,18 @@
+#include "grainlaw/dem/observe/contact_numbers.hpp"
+
+namespace grainlaw::dem::observe {
+
+std::array<double, 3> ContactNumbers::values(const View& view) const {
+  std::uint64_t bearing = 0, of_rattlers = 0;
+  for (const std::uint32_t c : view.network.contacts_of)
+    if (c >= bearing_contacts)
+      ++bearing;
+    else
+      of_rattlers += c;
+  const double all = 2 * static_cast<double>(view.network.contacts.size());
+  const double held = all - 2 * static_cast<double>(of_rattlers);
+  return {view.measured.C_r, bearing > 0 ? held / static_cast<double>(bearing) : undefined,
+          1 - view.measured.f_NR};
+}
+
+}  // namespace grainlaw::dem::observe

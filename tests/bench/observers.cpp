@@ -1,0 +1,152 @@
+// What observers cost, and whether grainlaw simulate --explain says so.
+// Usage: grainlaw_bench_observers [COUNT] [ROUNDS]
+//
+// Prints the time of a whole test, measured and as explained; the bare scene against the kernel's own loop;
+// and a step of the bare scene, a row of the standard columns and what each observer alone adds to a row,
+// measured and as explained. Processor seconds of this thread, medians over the rounds.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "grainlaw/dem/cost.hpp"
+#include "grainlaw/dem/dynamics.hpp"
+#include "grainlaw/dem/element_test.hpp"
+#include "grainlaw/dem/observe/names.hpp"
+#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/stage.hpp"
+
+namespace {
+
+using namespace grainlaw;
+namespace fs = std::filesystem;
+
+constexpr double long_strain = 0.02;     // to compare steps
+constexpr double short_strain = 0.0012;  // to compare rows: there is one after every other step
+constexpr std::int64_t rows = 500;
+
+double median(std::vector<double> list) {
+  std::sort(list.begin(), list.end());
+  return list[list.size() / 2];
+}
+
+dem::Scene scene(const std::string& json) {
+  return dem::Scene::read(Reader(parse_json(json, "bench"), "bench"), "");
+}
+
+/// A D2 test from the packing in `snapshot`.
+dem::Scene shear(const fs::path& snapshot, double strain, std::int64_t with_rows,
+                 const std::string& observer = "") {
+  return scene(R"({"preparation": {"snapshot": ")" + snapshot.string() +
+               R"("}, "path": {"segments": [{"mode": "d2", "amount": )" + std::to_string(strain) +
+               R"(}]}, "measure": {"rows": )" + std::to_string(with_rows) + R"(, "observe": [)" +
+               (observer.empty() ? "" : "\"" + observer + "\"") + "]}}");
+}
+
+double seconds_to_run(const dem::Scene& test, const fs::path& dir) {
+  const double begin = dem::thread_seconds();
+  dem::run_element_test(test, dir);
+  const double spent = dem::thread_seconds() - begin;
+  fs::remove_all(dir);
+  return spent;
+}
+
+/// The same steps by the kernel alone: no plan, no rows, no files.
+double seconds_of_kernel(const dem::Scene& test, const fs::path& snapshot, std::uint64_t& steps) {
+  const dem::State state = dem::read_frame(snapshot, {});
+  const dem::LongestSteps longest(test, *std::min_element(state.radius.begin(), state.radius.end()));
+  const dem::Stage stage = dem::plan_stages(test, state.volume_fraction(), longest).at(0);
+  dem::Vec3 rate;
+  for (std::size_t c = 0; c < 3; ++c) rate[c] = -stage.leg.strain[c] / stage.leg.duration;
+  const double begin = dem::thread_seconds();
+  dem::Dynamics dynamics(test.material, dem::read_frame(snapshot, {}));
+  dynamics.start(stage.stepping.dt, rate);
+  const dem::Vec3 start = dynamics.cell().length();
+  steps = stage.stepping.steps;
+  for (std::uint64_t n = 1; n <= steps; ++n) {
+    dem::Vec3 length = start;
+    for (std::size_t c = 0; c < 3; ++c)
+      length[c] *= std::exp(rate[c] * static_cast<double>(n) * stage.stepping.dt);
+    dynamics.step(length, rate);
+  }
+  return dem::thread_seconds() - begin;
+}
+
+using Times = std::map<std::string, std::vector<double>>;
+
+/// Gas, compression and shear, with relaxations that last as long as they are planned: what was measured and
+/// said.
+void compare_preparation(const std::string& count, const fs::path& dir) {
+  const dem::Scene prepare = scene(R"({"preparation": {"count": )" + count + R"(, "rate": 1e-3,
+    "relax": {"tolerance": 1e-300, "duration": 100}}, "path": {"segments": [
+      {"mode": "iso", "controls": {"nu": 0.75}, "rate": 2e-4}, {"mode": "relax", "tolerance": 1e-300, "duration": 300},
+      {"mode": "d2", "amount": 0.02, "rate": 1e-4}]}, "measure": {"rows": 1, "snapshots": [{"segment": 2}]}})");
+  const double said = dem::cost_of(prepare).seconds();
+  const double begin = dem::thread_seconds();
+  const auto summary = dem::run_element_test(prepare, dir);
+  const double spent = dem::thread_seconds() - begin;
+  std::printf("%s grains, from gas to shear, %.3g particle-steps: %.2f s, explained %.2f s: ratio %.2f\n",
+              count.c_str(), static_cast<double>(summary.particle_steps), spent, said, said / spent);
+}
+
+/// One round: each scene once, and once what --explain says of it.
+void measure_round(const fs::path& snapshot, const fs::path& dir, std::uint64_t& steps, Times& spent,
+                   Times& said) {
+  const dem::Scene bare = shear(snapshot, long_strain, 1);
+  spent["kernel"].push_back(seconds_of_kernel(bare, snapshot, steps));
+  spent["bare"].push_back(seconds_to_run(bare, dir));
+  said["bare"].push_back(dem::cost_of(bare).seconds());
+  const double without = seconds_to_run(shear(snapshot, short_strain, 1), dir);
+  const double standard = seconds_to_run(shear(snapshot, short_strain, rows), dir);
+  spent["standard columns"].push_back((standard - without) / static_cast<double>(rows - 1));
+  dem::Scene all = shear(snapshot, short_strain, rows);
+  all.measure.observe = dem::observe::names();
+  const dem::SceneCost cost = dem::cost_of(all);
+  said["standard columns"].push_back(cost.row_seconds);
+  for (const auto& observer : cost.observers) {
+    const double with = seconds_to_run(shear(snapshot, short_strain, rows, observer.name), dir);
+    spent[observer.name].push_back((with - standard) / static_cast<double>(rows + 1));
+    said[observer.name].push_back(observer.seconds_per_row);
+  }
+}
+
+void print(const Times& spent, const Times& said, std::uint64_t steps) {
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < spent.at("bare").size(); ++k)
+    ratios.push_back(spent.at("bare")[k] / spent.at("kernel")[k]);
+  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+  std::printf("bare scene over the kernel's own loop: %.3f (%.3f-%.3f)\n", median(ratios), *least, *most);
+  const double step = median(spent.at("kernel")) / static_cast<double>(steps);
+  std::printf("%-24s %12s %12s %8s %10s\n", "", "measured us", "explained us", "ratio", "in steps");
+  const auto line = [&](const std::string& name, double divisor) {
+    const double measured = median(spent.at(name)) / divisor, explained = median(said.at(name)) / divisor;
+    std::printf("%-24s %12.1f %12.1f %8.2f %10.2f\n", name.c_str(), 1e6 * measured, 1e6 * explained,
+                explained / measured, measured / step);
+  };
+  line("bare", static_cast<double>(steps));
+  line("standard columns", 1);
+  for (const auto& name : dem::observe::names()) line(name, 1);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string count = argc > 1 ? argv[1] : "2000";
+  const int rounds = argc > 2 ? std::atoi(argv[2]) : 5;
+  const fs::path dir = fs::temp_directory_path() / ("grainlaw-bench-observers-" + std::to_string(::getpid()));
+  fs::create_directories(dir);
+  compare_preparation(count, dir / "prepare");
+  Times spent, said;
+  std::uint64_t steps = 0;
+  for (int round = 0; round < rounds; ++round)
+    measure_round(dir / "prepare" / "snapshots.h5", dir / "run", steps, spent, said);
+  print(spent, said, steps);
+  fs::remove_all(dir);
+}

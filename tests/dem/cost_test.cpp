@@ -1,0 +1,70 @@
+// What --explain says of a scene: planned steps, rows and bytes against a run of it. That the times are right
+// is for tests/bench/observers to show: a test machine is too busy.
+#include "grainlaw/dem/cost.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "grainlaw/dem/element_test.hpp"
+#include "grainlaw/dem/observe/observers.hpp"
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/record.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+namespace fs = std::filesystem;
+
+Scene scene_of(const std::string& json) {
+  return Scene::read(Reader(parse_json(json, "s.json"), "s.json"), "");
+}
+
+TEST(Cost, OfASceneAgainstItsRun) {
+  // Relaxations that cannot end early, so that the planned steps are those taken.
+  const Scene scene = scene_of(R"({
+    "preparation": {"count": 64, "rate": 2e-3, "relax": {"tolerance": 1e-300, "duration": 5}},
+    "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.7}, "rate": 1e-3}, {"mode": "d2", "amount": 0.01, "rate": 1e-3}]},
+    "measure": {"rows": 7, "snapshots": [{"segment": 1}], "observe": ["percolation", "radius"]}})");
+  const SceneCost cost = cost_of(scene);
+  const fs::path dir = fs::temp_directory_path() / ("grainlaw-cost-test-" + std::to_string(::getpid()));
+  const RunSummary run = run_element_test(scene, dir);
+  EXPECT_DOUBLE_EQ(cost.particle_steps(), static_cast<double>(run.particle_steps));
+  EXPECT_EQ(cost.rows, Record::read_csv(dir / "record.csv").rows());
+  EXPECT_EQ(cost.snapshots, 1u);
+  fs::remove_all(dir);
+  ASSERT_EQ(cost.stages.size(), 4u);
+  EXPECT_DOUBLE_EQ(cost.stages[0].nu[0], 0.3);
+  EXPECT_NEAR(cost.stages[0].nu[1], 0.64, 1e-12);
+  EXPECT_NEAR(cost.stages[2].nu[1], 0.7, 1e-12);
+  for (const StageCost& stage : cost.stages) EXPECT_GT(stage.seconds, 0) << stage.stage.name;
+  ASSERT_EQ(cost.observers.size(), 2u);
+  EXPECT_EQ(cost.observers[0].name, "percolation");
+  for (const ObserverCost& observer : cost.observers) {
+    EXPECT_GT(observer.seconds_per_row, 0);
+    EXPECT_GT(observer.bytes, 0);
+  }
+  // A table is kept in memory until it is written: row, and five columns, of 20 bins.
+  EXPECT_GE(cost.observers[1].bytes, 15 * 20 * 6 * 8);
+  double fields = 0;
+  for (const FieldCost& field : cost.fields) fields += field.bytes_per_grain;
+  EXPECT_NEAR(cost.bytes(), 64 * fields + cost.observers[0].bytes + cost.observers[1].bytes, 1e-6);
+}
+
+TEST(Cost, NothingObservedCostsNothing) {
+  const SceneCost cost = cost_of(scene_of(R"({"preparation": {"count": 64, "nu": 0.7},
+    "path": {"segments": [{"mode": "d2", "amount": 0.01}]}})"));
+  EXPECT_TRUE(cost.observers.empty());
+  EXPECT_GT(cost.row_seconds, 0);
+}
+
+TEST(Cost, RefusesWhatARunRefuses) {
+  const Scene narrow = scene_of(R"({"preparation": {"count": 8}, "path": {"segments": [
+    {"mode": "components", "strain": [1.5, -0.75, -0.75]}]}})");
+  EXPECT_THROW(cost_of(narrow), Error);
+}
+
+}  // namespace
+}  // namespace grainlaw::dem

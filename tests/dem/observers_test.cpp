@@ -1,0 +1,328 @@
+// Observers against closed forms: crystals, chains through the box, gases; and what must not matter to them.
+#include "grainlaw/dem/observe/observers.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "grainlaw/dem/random.hpp"
+#include "packings.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+using observe::Observers;
+
+Material elastic() {
+  Material m;
+  m.gamma = 0;
+  return m;
+}
+
+/// A path that shears in D2: x extends, y compresses.
+SignConvention d2_signs() {
+  Leg leg{};
+  leg.mode = Mode::d2;
+  leg.strain = {-0.1, 0.1, 0};
+  return SignConvention({leg});
+}
+
+/// What `observers` say of a state, by column.
+std::map<std::string, double> see(Observers& observers, const Material& m, const State& state) {
+  const Dynamics dynamics(m, state);
+  const auto values =
+      observers.observe(dynamics, dynamics.velocities(), dynamics.measure(), m, d2_signs(), 0, 0);
+  EXPECT_EQ(values.size(), observers.columns().size());
+  std::map<std::string, double> by_column;
+  for (std::size_t k = 0; k < values.size(); ++k) by_column[observers.columns()[k]] = values[k];
+  return by_column;
+}
+
+std::map<std::string, double> see(const Material& m, const State& state) {
+  Observers all(observe::names());
+  return see(all, m, state);
+}
+
+Record table_of(const std::string& name, const Material& m, const State& state) {
+  Observers observers({name});
+  see(observers, m, state);
+  return observers.tables().at(0).rows;
+}
+
+TEST(Observers, FaceCentredCubic) {
+  const auto seen = see(elastic(), test::crystal(0.99, 0));  // twelve contacts each, overlap 0.02
+  EXPECT_DOUBLE_EQ(seen.at("C_r"), 12);
+  EXPECT_DOUBLE_EQ(seen.at("C_star_p"), 12);
+  EXPECT_EQ(seen.at("phi_r"), 0);
+  EXPECT_NEAR(seen.at("overlap"), 0.02, 1e-13);
+  EXPECT_NEAR(seen.at("E_p"), 6 * 0.5 * 0.02 * 0.02, 1e-14);
+  EXPECT_EQ(seen.at("E_k"), 0);
+  for (const char* c : {"F0xx", "F0yy", "F0zz"}) EXPECT_NEAR(seen.at(c), 1.0 / 3, 1e-14) << c;
+  for (const char* c : {"F0yz", "F0xz", "F0xy", "F0_dev"}) EXPECT_NEAR(seen.at(c), 0, 1e-14) << c;
+  EXPECT_LT(seen.at("unbalanced"), 1e-10);
+  EXPECT_EQ(seen.at("percolating"), 0);  // no force is 2.2 times the mean
+  EXPECT_EQ(seen.at("xi_x"), 0);
+  EXPECT_TRUE(std::isnan(seen.at("D2_min")));
+}
+
+TEST(Observers, EqualForcesAreOneBinOfTheDistributions) {
+  for (const char* name : {"force_distribution", "overlap_distribution"}) {
+    const Record table = table_of(name, elastic(), test::crystal(0.99, 0));
+    ASSERT_EQ(table.rows(), 81u);
+    double sum = 0;
+    for (std::size_t k = 0; k < table.rows(); ++k) {
+      EXPECT_EQ(table["count"][k], k == 10 ? 32 * 6 : 0) << name << " " << table["x"][k];
+      sum += table["P"][k] * 0.1;
+    }
+    EXPECT_DOUBLE_EQ(table["x"][10], 1);
+    EXPECT_NEAR(sum, 1, 1e-14);
+  }
+}
+
+TEST(Observers, RattlersAreLeftOutOfPartnersToo) {
+  // A crystal with one small grain that three of its grains hold: those three have 13 contacts.
+  State state = test::crystal(0.99, 0);
+  const double a = 0.5 * state.box(0, 0);
+  state.position.push_back({a / 2 + 0.12, 0.12, 0.12});
+  state.radius.push_back(0.3);
+  state.velocity.push_back({0, 0, 0});
+  const auto seen = see(elastic(), state);
+  EXPECT_DOUBLE_EQ(seen.at("C_star_p"), 12);
+  EXPECT_DOUBLE_EQ(seen.at("C_r"), (32.0 * 12 + 6) / 33);
+  EXPECT_NEAR(seen.at("phi_r"), 1.0 / 33, 1e-15);
+}
+
+/// A state of unit grains: `strong` in a row from `begin` by `step`, overlapping by 0.1, and far away thirty
+/// pairs that hardly touch, so that the forces in the row are more than 2.2 times the mean.
+State row_of_grains(std::size_t strong, const Vec3& begin, const Vec3& step, const Vec3& box) {
+  State state;
+  state.box = Mat3::diagonal(box);
+  const auto put = [&](const Vec3& x) {
+    state.position.push_back(x);
+    state.velocity.push_back({});
+    state.radius.push_back(1);
+  };
+  for (std::size_t k = 0; k < strong; ++k) {
+    const auto n = static_cast<double>(k);
+    put({begin[0] + n * step[0], begin[1] + n * step[1], begin[2] + n * step[2]});
+  }
+  for (int a = 0; a < 5; ++a)
+    for (int b = 0; b < 6; ++b) {
+      put({2 + 3 * a + 0.0, 3 * b + 2.0, 20});
+      put({2 + 3 * a + 0.0, 3 * b + 2.0, 21.999});
+    }
+  return state;
+}
+
+void expect_spans(const State& state, const std::array<double, 3>& xi, double percolating) {
+  const auto seen = see(elastic(), state);
+  EXPECT_NEAR(seen.at("xi_x"), xi[0], 1e-12);
+  EXPECT_NEAR(seen.at("xi_y"), xi[1], 1e-12);
+  EXPECT_NEAR(seen.at("xi_z"), xi[2], 1e-12);
+  EXPECT_EQ(seen.at("percolating"), percolating);
+}
+
+TEST(Percolation, AStraightChainThroughTheBox) {
+  expect_spans(row_of_grains(10, {5, 5, 5}, {1.9, 0, 0}, {19, 19, 30}), {1, 0, 0}, 1);
+  // one grain is missing: nine in a row, through the face of the box
+  expect_spans(row_of_grains(9, {12, 5, 5}, {1.9, 0, 0}, {19, 19, 30}), {8 * 1.9 / 19, 0, 0}, 0);
+}
+
+TEST(Percolation, AlongEachAxis) {
+  expect_spans(row_of_grains(10, {5, 5, 5}, {0, 1.9, 0}, {19, 19, 30}), {0, 1, 0}, 1);
+  expect_spans(row_of_grains(15, {17.5, 9.5, 1}, {0, 0, -1.9}, {19, 19, 28.5}), {0, 0, 1}, 1);
+}
+
+TEST(Percolation, ADiagonalChainRunsAlongTwoAxes) {
+  const double step = 1.9 / std::sqrt(2.0);
+  expect_spans(row_of_grains(14, {1, 3, 5}, {step, step, 0}, {14 * step, 14 * step, 30}), {1, 1, 0}, 2);
+}
+
+TEST(Percolation, AChainLongerThanTheBoxThatMissesItselfDoesNotPercolate) {
+  // After a turn around x it has moved 3 along y.
+  const Vec3 step{1.8735, 0.3, 0.1};  // of length 1.9 or so
+  expect_spans(row_of_grains(14, {1, 3, 5}, step, {19, 19, 30}), {1, 13 * 0.3 / 19, 13 * 0.1 / 30}, 0);
+}
+
+TEST(Observers, OneContactIsWhollyUnbalanced) {
+  State state;
+  state.box = Mat3::diagonal({10, 10, 10});
+  state.radius = {1, 0.5};
+  state.position = {{0.2, 5, 5}, {9.0, 5, 5}};  // touch through the face x = 0; overlap 0.3
+  state.velocity = {{0, 0, 0}, {0, 0, 0}};
+  const auto seen = see(elastic(), state);
+  EXPECT_NEAR(seen.at("unbalanced"), 1, 1e-14);
+  EXPECT_NEAR(seen.at("overlap"), 0.3, 1e-14);
+  EXPECT_NEAR(seen.at("F0xx"), 1, 1e-14);
+  EXPECT_NEAR(seen.at("F0_dev"), -1, 1e-14);  // D2: sgn(Fyy - Fxx)
+  EXPECT_TRUE(std::isnan(seen.at("C_star_p")));
+  const Record radius = table_of("radius", elastic(), state);
+  ASSERT_EQ(radius.rows(), 20u);
+  for (const std::size_t k : {std::size_t{0}, std::size_t{19}}) {
+    EXPECT_EQ(radius["grains"][k], 1);
+    EXPECT_NEAR(radius["overlap"][k], 0.3, 1e-14);
+    EXPECT_TRUE(std::isnan(radius["C_star"][k]));
+    EXPECT_NEAR(radius["F_dev"][k], -state.volume_fraction(), 1e-14);  // nu n (x) n in either bin
+  }
+  EXPECT_EQ(radius["grains"][7], 0);
+  EXPECT_TRUE(std::isnan(radius["overlap"][7]));
+}
+
+TEST(Observers, RadiusAgainstContactsByBruteForce) {
+  const Material m = elastic();
+  const State state = test::squeezed(m, 300, 31, 0.75);
+  const Record table = table_of("radius", m, state);
+  const auto contacts = test::brute_force(state);
+  std::vector<double> count(300, 0), overlap(300, 0);
+  for (const auto& [i, j, delta] : contacts)
+    for (const auto g : {i, j}) {
+      ++count[g];
+      overlap[g] += delta;
+    }
+  const auto [least, most] = std::minmax_element(state.radius.begin(), state.radius.end());
+  for (std::size_t k = 0; k < 20; ++k) {
+    double grains = 0, touching = 0, sum = 0, bearing = 0, held = 0;
+    for (std::size_t i = 0; i < 300; ++i) {
+      const double sc = (state.radius[i] - *least) / (*most - *least);
+      if (std::min<double>(19, std::floor(sc * 20)) != static_cast<double>(k)) continue;
+      ++grains;
+      touching += count[i];
+      sum += overlap[i];
+      if (count[i] >= 4) {
+        ++bearing;
+        held += count[i];
+      }
+    }
+    EXPECT_DOUBLE_EQ(table["r_sc"][k], (static_cast<double>(k) + 0.5) / 20);
+    EXPECT_EQ(table["grains"][k], grains);
+    ASSERT_GT(touching, 0);  // with 300 grains in 20 bins
+    EXPECT_NEAR(table["overlap"][k], sum / touching, 1e-12);
+    ASSERT_GT(bearing, 0);
+    EXPECT_NEAR(table["C_star"][k], held / bearing, 1e-12);
+  }
+}
+
+TEST(Observers, KineticStressOfAGasIsTwiceItsEnergyPerVolume) {
+  const Material m;
+  NewPacking packing;
+  packing.count = 200;
+  const State state = random_gas(m, packing);
+  const auto seen = see(m, state);
+  const double volume = state.box(0, 0) * state.box(1, 1) * state.box(2, 2);
+  const double trace = (seen.at("kxx") + seen.at("kyy") + seen.at("kzz")) * m.stress_unit() * volume;
+  const double energy = seen.at("E_k") * 200 * m.k * m.r_mean * m.r_mean;
+  EXPECT_NEAR(trace / energy, 2, 1e-12);
+  double expected = 0;
+  for (std::size_t i = 0; i < 200; ++i)
+    expected += 0.5 * m.rho * sphere_volume(state.radius[i]) * dot(state.velocity[i], state.velocity[i]);
+  EXPECT_NEAR(energy / expected, 1, 1e-12);
+  EXPECT_TRUE(std::isnan(seen.at("overlap")));
+  EXPECT_TRUE(std::isnan(seen.at("unbalanced")));
+  EXPECT_EQ(seen.at("percolating"), 0);
+  EXPECT_EQ(table_of("force_distribution", m, state).rows(), 0u);
+}
+
+class Rearrangement : public testing::Test {
+ protected:
+  double between(const Material& m, const State& before, const State& after) {
+    Observers observers({"nonaffine"});
+    see(observers, m, before);
+    return see(observers, m, after).at("D2_min");
+  }
+};
+
+TEST_F(Rearrangement, NothingMovesInAnAffineDeformation) {
+  const Material m = elastic();
+  const State before = test::squeezed(m, 200, 33, 0.7);
+  State after = before;
+  const Vec3 stretch{1.05, 0.96, 0.98};
+  for (std::size_t c = 0; c < 3; ++c) {
+    after.box(c, c) *= stretch[c];
+    for (auto& x : after.position) x[c] = x[c] * stretch[c] + 3.7;
+  }
+  EXPECT_LT(between(m, before, after), 1e-26);
+}
+
+TEST_F(Rearrangement, OneGrainOfACrystal) {
+  // Each grain has its twelve contacts as neighbours, Y = 4 d^2 I. The grain that moves by u sees twelve
+  // branches change by u, which no J follows: |u|^2. Each of its neighbours sees one change: (1 - 1/4)
+  // |u|^2/12.
+  const State before = test::crystal(0.99, 0);
+  State after = before;
+  const Vec3 u{0.003, -0.002, 0.001};
+  for (std::size_t c = 0; c < 3; ++c) after.position[17][c] += u[c];
+  EXPECT_NEAR(between(elastic(), before, after) / (dot(u, u) * 1.75 / 32), 1, 1e-9);
+}
+
+class ObserversInvariance : public testing::Test {
+ protected:
+  Material m;
+  State state = test::squeezed(m, 200, 23, 0.72);
+  std::map<std::string, double> here = see(m, state);
+  void expect_equal(const std::map<std::string, double>& other,
+                    const std::map<std::string, std::string>& names) {
+    for (const auto& [column, value] : here) {
+      if (column == "D2_min") continue;  // undefined in a first row
+      const auto renamed = names.find(column);
+      const double seen = other.at(renamed == names.end() ? column : renamed->second);
+      EXPECT_NEAR(seen, value, 1e-10 * std::max(1.0, std::abs(value))) << column;
+    }
+  }
+};
+
+TEST_F(ObserversInvariance, Permutation) {
+  std::vector<std::size_t> order(state.count());
+  std::iota(order.begin(), order.end(), 0u);
+  Random(1).shuffle(order);
+  State other = state;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    other.position[i] = state.position[order[i]];
+    other.velocity[i] = state.velocity[order[i]];
+    other.radius[i] = state.radius[order[i]];
+  }
+  expect_equal(see(m, other), {});
+}
+
+TEST_F(ObserversInvariance, TranslationAndImages) {
+  State other = state;
+  for (std::size_t i = 0; i < other.count(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      other.position[i][c] += 1.234 * static_cast<double>(c + 1) +
+                              state.box(c, c) * static_cast<double>(i % 5) - 2 * state.box(c, c);
+  expect_equal(see(m, other), {});
+}
+
+TEST_F(ObserversInvariance, AxisSwap) {
+  State other = state;
+  for (std::size_t i = 0; i < other.count(); ++i) {
+    other.position[i] = {state.position[i][1], state.position[i][2], state.position[i][0]};
+    other.velocity[i] = {state.velocity[i][1], state.velocity[i][2], state.velocity[i][0]};
+  }
+  other.box = Mat3::diagonal({state.box(1, 1), state.box(2, 2), state.box(0, 0)});
+  std::map<std::string, std::string> names{{"xi_x", "xi_z"}, {"xi_y", "xi_x"}, {"xi_z", "xi_y"}};
+  for (const std::string q : {"k", "F0"}) {
+    const std::pair<const char*, const char*> pairs[] = {{"xx", "zz"}, {"yy", "xx"}, {"zz", "yy"},
+                                                         {"yz", "xy"}, {"xz", "yz"}, {"xy", "xz"}};
+    for (const auto& [old, now] : pairs) names[q + old] = q + now;
+  }
+  const double signed_before = here.at("F0_dev");
+  here.erase("F0_dev");
+  const auto there = see(m, other);
+  expect_equal(there, names);
+  EXPECT_NEAR(std::abs(there.at("F0_dev")), std::abs(signed_before), 1e-12);  // its sign is the mode's
+}
+
+TEST(Observers, NoneCostsNoColumn) {
+  Observers none({});
+  EXPECT_TRUE(see(none, elastic(), test::crystal(0.99, 0)).empty());
+  EXPECT_TRUE(observe::columns({}).empty());
+  EXPECT_TRUE(observe::tables({}).empty());
+  EXPECT_THAT(observe::columns({"nonaffine", "contacts"}),
+              testing::ElementsAre("C_r", "C_star_p", "phi_r", "D2_min"));
+}
+
+}  // namespace
+}  // namespace grainlaw::dem
