@@ -56,7 +56,6 @@ std::string short_text(double x) {
 RowWriter::RowWriter(const Material& material, const std::vector<Leg>& legs, double nu_start,
                      const std::vector<std::string>& observe)
     : material_(material),
-      legs_(legs),
       sign_(legs),
       nu_start_(nu_start),
       observers_(observe),
@@ -64,12 +63,7 @@ RowWriter::RowWriter(const Material& material, const std::vector<Leg>& legs, dou
 
 double RowWriter::eps_vol(const Measurement& m) const { return std::log(m.nu / nu_start_); }
 
-double RowWriter::eps_dev(std::size_t segment, double progress) const {
-  const Leg& leg = legs_.at(segment);
-  return leg.eps_dev[0] + progress * (leg.eps_dev[1] - leg.eps_dev[0]);
-}
-
-void RowWriter::append(const Dynamics& dynamics, std::size_t segment, double progress, double time) {
+void RowWriter::append(const Dynamics& dynamics, std::size_t segment, double eps_dev, double time) {
   const std::vector<Quad> velocity = dynamics.velocities();
   const Measurement m =
       measure(dynamics.law(), dynamics.grains(), velocity, dynamics.cell(), dynamics.neighbours().pairs());
@@ -82,7 +76,7 @@ void RowWriter::append(const Dynamics& dynamics, std::size_t segment, double pro
   Row row;
   row.set("segment", static_cast<double>(segment));
   row.set("eps_vol", eps_vol(m));
-  row.set("eps_dev", eps_dev(segment, progress));
+  row.set("eps_dev", eps_dev);
   row.set("nu", m.nu);
   row.set("P", pressure);
   row.set("sigma_dev", shear);

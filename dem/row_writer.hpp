@@ -22,12 +22,11 @@ class RowWriter {
   RowWriter(const Material& material, const std::vector<Leg>& legs, double nu_start,
             const std::vector<std::string>& observe = {});
 
-  /// Measures, and appends one row: `progress` in [0, 1] along leg `segment`, `time` since the start of the
-  /// path in us. Throws Error if the grains have become unstable (energies not finite).
-  void append(const Dynamics& dynamics, std::size_t segment, double progress, double time);
+  /// Measures, and appends one row: `eps_dev` of the path where the box is, `time` since the start of the path
+  /// in us. Throws Error if the grains have become unstable (energies not finite).
+  void append(const Dynamics& dynamics, std::size_t segment, double eps_dev, double time);
 
   double eps_vol(const Measurement& m) const;
-  double eps_dev(std::size_t segment, double progress) const;
   const Record& record() const { return record_; }
   /// What goes into files of its own.
   const std::vector<observe::Table>& tables() const { return observers_.tables(); }
@@ -48,7 +47,6 @@ class RowWriter {
   void watch(const Measurement& m, double pressure);
 
   Material material_;
-  std::vector<Leg> legs_;
   SignConvention sign_;
   double nu_start_;
   observe::Observers observers_;
