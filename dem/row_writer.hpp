@@ -22,8 +22,8 @@ class RowWriter {
   RowWriter(const Material& material, const std::vector<Leg>& legs, double nu_start,
             const std::vector<std::string>& observe = {});
 
-  /// Measures, and appends one row: `eps_dev` of the path where the box is, `time` since the start of the path
-  /// in us. Throws Error if the grains have become unstable (energies not finite).
+  /// Measures, and appends one row: `eps_dev` of the path where the box is, `time` since the start of the
+  /// path in us. Throws Error if the grains have become unstable (energies not finite).
   void append(const Dynamics& dynamics, std::size_t segment, double eps_dev, double time);
 
   double eps_vol(const Measurement& m) const;
