@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "grainlaw/element/error.hpp"
 
@@ -16,13 +17,21 @@ constexpr double outer_skin = 0.7;    // in units of the mean radius; less where
 constexpr double least_skin = 0.02;   // the narrowest outer skin worth listing
 constexpr std::uint32_t block = 64;   // grains that are grouped by their number of partners
 constexpr std::uint32_t most_told_apart = 31;  // numbers of partners
-constexpr double flight_share = 0.125;         // s_i at most this share of the outer skin
+constexpr double flight_share = 0.125;         // s_i at most this share of the outer skin, but of a flyer
+constexpr std::size_t most_flyers = 16;
+constexpr double longest_flight = 1;  // s_i of a flyer, in units of the mean radius
 
 /// |x - E X|^2
 double strayed(const Quad& x, const Quad& reference, const Mat3& deformation) {
   const Vec3 carried = deformation * Vec3{reference.x, reference.y, reference.z};
   const double a = x.x - carried[0], b = x.y - carried[1], c = x.z - carried[2];
   return a * a + b * b + c * c;
+}
+
+/// Whether the spheres of radius w about a and the image of b meet.
+bool near(const Quad& a, const Quad& b, const Quad& shift) {
+  const double x = a.x - b.x - shift.x, y = a.y - b.y - shift.y, z = a.z - b.z - shift.z, reach = a.w + b.w;
+  return x * x + y * y + z * z < reach * reach;
 }
 
 }  // namespace
@@ -45,7 +54,11 @@ void Neighbours::update(Grains& grains, Cell& cell, double lookahead) {
   make_budgets(grains, lookahead);
   if (!outer_covers(grains, cell)) {
     sort_and_list(grains, cell);
-    make_budgets(grains, lookahead);  // in the new order, and within the new skin
+    make_budgets(grains, lookahead);    // in the new order, and within the new skin
+    if (!outer_covers(grains, cell)) {  // too narrow a box for flyers
+      for (const std::uint32_t i : flyers_) budget_[i] = flight_share * outer_skin_;
+      flyers_.clear();
+    }
   }
   filter(grains, cell);
   ++updates_;
@@ -55,24 +68,46 @@ void Neighbours::make_budgets(const Grains& grains, double lookahead) {
   const double least = std::min(rest_budget * unit_, 0.25 * flight_share * outer_skin_);
   const double most = flight_share * outer_skin_;
   budget_.resize(grains.count());
-  for (std::size_t i = 0; i < grains.count(); ++i) {
+  flyers_.clear();
+  bool few = true;
+  for (std::uint32_t i = 0; i < grains.count(); ++i) {
     const Quad& v = grains.motion[i];
-    const double speed = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    budget_[i] = std::min(least + speed * lookahead, most);
+    const double flight = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * lookahead;
+    budget_[i] = std::min(least + flight, most);
+    if (flight <= most || !few) continue;
+    few = flyers_.size() < most_flyers;
+    if (few) flyers_.push_back(i);
+  }
+  if (!few) flyers_.clear();
+  for (const std::uint32_t i : flyers_) {
+    const Quad& v = grains.motion[i];
+    budget_[i] =
+        least + std::min(std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * lookahead, longest_flight * unit_);
   }
 }
 
 /// Whether every pair that the inner list must hold is in the outer one: for all i, with e the shrink since
-/// the outer list was made, |w_i| + s_i/e_min + r_i (1/e_min - e) <= e skin/2.
-bool Neighbours::outer_covers(const Grains& grains, const Cell& cell) const {
+/// the outer list was made, |w_i| + s_i/e_min + r_i (1/e_min - e) <= e skin/2. A few grains for which that
+/// fails join the flyers, whose pairs are not looked for there.
+bool Neighbours::outer_covers(const Grains& grains, const Cell& cell) {
   if (outer_reference_.size() != grains.count()) return false;
   const Mat3 deformation = cell.deformation_from(outer_cell_.edges());
   const double e = least_stretch(deformation), inflate = 1 / (1 - box_budget);
-  for (std::size_t i = 0; i < grains.count(); ++i) {
+  auto flyer = flyers_.begin();
+  std::vector<std::uint32_t> flyers;
+  // Flyers and their partners must meet through one of the 27 images.
+  const double widest = 2 * largest_radius_ + 2 * outer_skin_,
+               allowed = 0.5 * (e * cell.narrowest() - widest);
+  for (std::uint32_t i = 0; i < grains.count(); ++i) {
+    const bool flies = flyer != flyers_.end() && *flyer == i;
+    if (flies) ++flyer;
     const double room = 0.5 * e * outer_skin_ - budget_[i] * inflate - grains.place[i].w * (inflate - e);
-    if (!(room >= 0) || strayed(grains.place[i], outer_reference_[i], deformation) > room * room)
-      return false;
+    const double squared = strayed(grains.place[i], outer_reference_[i], deformation);
+    if (!flies && room >= 0 && squared <= room * room) continue;
+    if (flyers.size() == most_flyers || !(std::sqrt(squared) + 2 * budget_[i] <= allowed)) return false;
+    flyers.push_back(i);
   }
+  flyers_.swap(flyers);
   return true;
 }
 
@@ -119,10 +154,11 @@ void Neighbours::filter(const Grains& grains, const Cell& cell) {
     inner_reference_[i] = {p.x, p.y, p.z, (p.w + budget_[i]) * inflate};
   }
   inner_cell_ = cell;
-  const auto near = [this](const Quad& a, const Quad& b, const Quad& shift) {
-    const double x = a.x - b.x - shift.x, y = a.y - b.y - shift.y, z = a.z - b.z - shift.z, reach = a.w + b.w;
-    return x * x + y * y + z * z < reach * reach;
-  };
+  std::vector<Quad> flying;
+  for (const std::uint32_t i : flyers_) {
+    flying.push_back(inner_reference_[i]);
+    inner_reference_[i].x = std::numeric_limits<double>::quiet_NaN();  // near to none
+  }
   const std::array<Quad, 27> shifts = cell.shifts();
   near_begin_.resize(count + 1);
   near_.resize(outer_.partner.size() + 1);
@@ -143,8 +179,38 @@ void Neighbours::filter(const Grains& grains, const Cell& cell) {
   for (const auto& [i, j, image] : outer_.crossing)
     if (near(inner_reference_[i], inner_reference_[j], shifts[image]))
       crossing.pairs.push_back({i, j, image});
+  list_flyers(flying, shifts);
   crossing.fill_up();
   for (std::size_t i = 0; i < count; ++i) inner_reference_[i].w = budget_[i] * budget_[i];
+}
+
+/// The pairs of the grains that fly, looked for among all grains and through all images in which one of them
+/// may lie near.
+void Neighbours::list_flyers(const std::vector<Quad>& flying, const std::array<Quad, 27>& shifts) {
+  double reach = 0;
+  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  const auto enclose = [&](const Quad& b) {
+    reach = std::max(reach, b.w);
+    low = {std::min(low[0], b.x), std::min(low[1], b.y), std::min(low[2], b.z)};
+    high = {std::max(high[0], b.x), std::max(high[1], b.y), std::max(high[2], b.z)};
+  };
+  if (!flying.empty())
+    for (const Quad& b : inner_reference_) enclose(b);  // a comparison drops what is not a number
+  for (std::size_t k = 0; k < flying.size(); ++k) {
+    const Quad& a = flying[k];
+    for (std::uint32_t image = 0; image < shifts.size(); ++image) {
+      const Quad& shift = shifts[image];
+      const Vec3 at{a.x - shift.x, a.y - shift.y, a.z - shift.z};
+      bool inside = true;
+      for (std::size_t c = 0; c < 3; ++c)
+        inside = inside && at[c] > low[c] - reach - a.w && at[c] < high[c] + reach + a.w;
+      if (!inside) continue;
+      for (std::uint32_t j = 0; j < inner_reference_.size(); ++j)
+        if (near(a, inner_reference_[j], shift)) inner_.crossing.pairs.push_back({flyers_[k], j, image});
+    }
+    inner_reference_[flyers_[k]] = a;  // so that the next flyers meet it
+    enclose(a);
+  }
 }
 
 /// Groups grains that lie side by side and have about as many partners.

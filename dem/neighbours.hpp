@@ -21,7 +21,8 @@ namespace grainlaw::dem {
 /// budget s_i for |w_i|, more if it flies; the box has one for e. Every pair with |D| < (r_i + s_i + r_j +
 /// s_j)/e_min is listed, so the list is complete as long as |w_i| <= s_i for all i and e >= e_min; `outdated`
 /// tests exactly that. The outer list has the same skin for all grains, and is renewed when a filtered list
-/// could miss a pair.
+/// could miss a pair. A few grains that fly too far or too fast for it do not renew it: they are left out of
+/// it, and their pairs are looked for among all grains.
 class Neighbours {
  public:
   /// `unit` is the length that skins are measured in (the mean radius), mm.
@@ -49,14 +50,15 @@ class Neighbours {
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {
     archive(self.largest_radius_, self.outer_skin_, self.outer_reference_, self.outer_cell_, self.budget_,
-            self.inner_reference_, self.inner_cell_, self.updates_, self.sorts_);
+            self.flyers_, self.inner_reference_, self.inner_cell_, self.updates_, self.sorts_);
   }
   /// Makes the same lists again, in the same order.
   void rebuild(const Grains& grains);
 
  private:
   void make_budgets(const Grains& grains, double lookahead);
-  bool outer_covers(const Grains& grains, const Cell& cell) const;
+  bool outer_covers(const Grains& grains, const Cell& cell);
+  void list_flyers(const std::vector<Quad>& flying, const std::array<Quad, 27>& shifts);
   void sort_and_list(Grains& grains, Cell& cell);
   double outer_range() const { return 2 * largest_radius_ + outer_skin_; }
   void filter(const Grains& grains, const Cell& cell);
@@ -69,6 +71,7 @@ class Neighbours {
   Pairs inner_;
   std::vector<std::uint32_t> near_begin_,
       near_;                           ///< the filtered pairs grain by grain, before they are interleaved
+  std::vector<std::uint32_t> flyers_;  ///< whose pairs are looked for among all grains; rising
   std::vector<double> budget_;         ///< s_i, mm
   std::vector<Quad> inner_reference_;  ///< X | s_i^2, of the inner list
   std::vector<Quad> outer_reference_;  ///< X, of the outer list
