@@ -54,7 +54,8 @@ Mat3 root_of(const Mat3& f, bool tilted) {
 }
 
 template <bool tilted>
-double advance_each(const Stride& stride, const ListReach& list, Grains& grains) {
+double advance_each(const Stride& stride, const ListReach& list, std::size_t first, std::size_t last,
+                    Grains& grains) {
   const double dt = stride.dt;
   // The last of the four: radius in place, 1/mass in acceleration, 0 in the velocities, unused in force.
   const Four step = first_three({dt, dt, dt}, 0), half_step = first_three({0.5 * dt, 0.5 * dt, 0.5 * dt}, 0);
@@ -64,7 +65,7 @@ double advance_each(const Stride& stride, const ListReach& list, Grains& grains)
   // The fluctuation of a step is carried along by half of its deformation.
   const Matrix<tilted> carry(dt * root_of(stride.deformation, tilted)), since_list(list.deformation);
   Four excess = all(-1), places = all(0);
-  for (std::size_t i = 0; i < grains.count(); ++i) {
+  for (std::size_t i = first; i < last; ++i) {
     const Four before = load(grains.acceleration[i]), inverse_mass = spread<3>(before);
     const Four seen = load(grains.motion[i]);
     const Four from_force = load(grains.force[i]) * inverse_mass, place = load(grains.place[i]);
@@ -92,8 +93,10 @@ double advance_each(const Stride& stride, const ListReach& list, Grains& grains)
   return result[0];
 }
 
-double advance_grains(const Stride& stride, const ListReach& list, Grains& grains) {
-  return stride.tilted ? advance_each<true>(stride, list, grains) : advance_each<false>(stride, list, grains);
+double advance_grains(const Stride& stride, const ListReach& list, std::size_t first, std::size_t last,
+                      Grains& grains) {
+  return stride.tilted ? advance_each<true>(stride, list, first, last, grains)
+                       : advance_each<false>(stride, list, first, last, grains);
 }
 
 }  // namespace grainlaw::dem::HWY_NAMESPACE
@@ -105,7 +108,12 @@ namespace grainlaw::dem {
 HWY_EXPORT(advance_grains);
 
 double advance(const Stride& stride, const ListReach& list, Grains& grains) {
-  return HWY_DYNAMIC_DISPATCH(advance_grains)(stride, list, grains);
+  return advance(stride, list, 0, grains.count(), grains);
+}
+
+double advance(const Stride& stride, const ListReach& list, std::size_t first, std::size_t last,
+               Grains& grains) {
+  return HWY_DYNAMIC_DISPATCH(advance_grains)(stride, list, first, last, grains);
 }
 
 }  // namespace grainlaw::dem

@@ -34,5 +34,8 @@ struct ListReach {
 /// the box, and predicts the velocity at n + 1. Returns the largest |x - E X|^2 - s^2 of a grain, mm^2;
 /// not a number if the place of any grain is not finite.
 double advance(const Stride& stride, const ListReach& list, Grains& grains);
+/// The same for grains first ... last - 1 alone.
+double advance(const Stride& stride, const ListReach& list, std::size_t first, std::size_t last,
+               Grains& grains);
 
 }  // namespace grainlaw::dem

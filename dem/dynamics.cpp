@@ -1,5 +1,6 @@
 #include "grainlaw/dem/dynamics.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "grainlaw/dem/advance.hpp"
@@ -22,7 +23,7 @@ double time_step(const Material& material, double smallest_radius, double fracti
   return fraction * duration;
 }
 
-Dynamics::Dynamics(const Material& material, const State& state)
+Dynamics::Dynamics(const Material& material, const State& state, int threads)
     : material_(material),
       law_(LinearContact::of(material)),
       cell_(state.box),
@@ -30,21 +31,30 @@ Dynamics::Dynamics(const Material& material, const State& state)
       neighbours_(material.r_mean, grains_.largest_radius()),
       time_(state.time_us),
       steps_(state.step) {
-  neighbours_.update(grains_, cell_, 0);
+  assemble(threads);
+  update_list(0);
 }
 
-Dynamics::Dynamics(const Material& material, ArchiveReader& archive)
+Dynamics::Dynamics(const Material& material, ArchiveReader& archive, int threads)
     : material_(material), law_(LinearContact::of(material)), neighbours_(material.r_mean, 0) {
   keep(*this, archive);
   neighbours_.rebuild(grains_);
+  assemble(threads);
+  deal_out();
+}
+
+void Dynamics::assemble(int threads) {
+  if (threads < 2) return;
+  team_ = std::make_shared<ThreadPool>(threads);
+  shares_.resize(static_cast<std::size_t>(threads));
 }
 
 void Dynamics::start_flow(double dt, const Mat3& gradient) {
   grains_.motion = velocities();
   dt_ = dt;
   cell_ = cell_.moved(cell_.edges(), gradient);
-  if (neighbours_.outdated(grains_, cell_)) neighbours_.update(grains_, cell_, planned_steps * dt_);
-  contact_forces(law_, neighbours_.pairs(), cell_, grains_);
+  if (neighbours_.outdated(grains_, cell_)) update_list(planned_steps * dt_);
+  compute_forces();
   for (std::size_t i = 0; i < count(); ++i) {
     const Quad now = acceleration(i), &v = grains_.motion[i];
     grains_.half[i] = {v.x - 0.5 * dt * now.x, v.y - 0.5 * dt * now.y, v.z - 0.5 * dt * now.z, 0};
@@ -54,17 +64,53 @@ void Dynamics::start_flow(double dt, const Mat3& gradient) {
 
 void Dynamics::step(const Mat3& edges, const Mat3& gradient) {
   const Cell next = cell_.moved(edges, gradient);
-  const double excess = advance({dt_, next.deformation_from(cell_.edges()), cell_.gradient(),
-                                 material_.gamma_b, next.tilted() || cell_.tilted()},
-                                neighbours_.reach(next), grains_);
+  const double excess = advance_grains(next);
   if (!std::isfinite(excess))
     throw Error("the motion of the grains became unstable " + to_text(time_) +
                 " us after its start; measure.time_step (or time_step_gas) must be smaller");
   cell_ = next;
-  if (neighbours_.outdated(cell_, excess)) neighbours_.update(grains_, cell_, planned_steps * dt_);
-  contact_forces(law_, neighbours_.pairs(), cell_, grains_);
+  if (neighbours_.outdated(cell_, excess)) update_list(planned_steps * dt_);
+  compute_forces();
   time_ += dt_;
   ++steps_;
+}
+
+double Dynamics::advance_grains(const Cell& next) {
+  const Stride stride{dt_, next.deformation_from(cell_.edges()), cell_.gradient(), material_.gamma_b,
+                      next.tilted() || cell_.tilted()};
+  const ListReach list = neighbours_.reach(next);
+  if (!team_) return advance(stride, list, grains_);
+  std::vector<double> excess(shares_.size());
+  team_->run([&](int t) {
+    const auto k = static_cast<std::size_t>(t);
+    excess[k] = advance(stride, list, shares_[k].first, shares_[k].last, grains_);
+  });
+  double worst = -1;
+  for (const double share : excess) {
+    if (std::isnan(share)) return share;
+    worst = std::max(worst, share);
+  }
+  return worst;
+}
+
+void Dynamics::update_list(double lookahead) {
+  neighbours_.update(grains_, cell_, lookahead);
+  deal_out();
+}
+
+void Dynamics::deal_out() {
+  if (!team_) return;
+  team_->run([&](int t) {
+    const auto k = static_cast<std::size_t>(t);
+    deal(neighbours_.pairs(), count(), k, shares_.size(), shares_[k]);
+  });
+}
+
+void Dynamics::compute_forces() {
+  if (!team_) return contact_forces(law_, neighbours_.pairs(), cell_, grains_);
+  team_->run([&](int t) {
+    contact_forces(law_, neighbours_.pairs(), cell_, shares_[static_cast<std::size_t>(t)], grains_);
+  });
 }
 
 Quad Dynamics::acceleration(std::size_t i) const {

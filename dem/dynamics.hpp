@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "grainlaw/dem/archive.hpp"
@@ -11,7 +12,9 @@
 #include "grainlaw/dem/grains.hpp"
 #include "grainlaw/dem/measure.hpp"
 #include "grainlaw/dem/neighbours.hpp"
+#include "grainlaw/dem/shares.hpp"
 #include "grainlaw/dem/state.hpp"
+#include "grainlaw/dem/thread_pool.hpp"
 #include "grainlaw/element/material.hpp"
 
 namespace grainlaw::dem {
@@ -33,10 +36,11 @@ namespace grainlaw::dem {
 /// measurements, states) belongs to one time and one box.
 class Dynamics {
  public:
-  /// Throws Error as Neighbours::update does.
-  Dynamics(const Material& material, const State& state);
+  /// `threads` share each step; how many they are changes no bit of it. Throws Error as Neighbours::update
+  /// does.
+  Dynamics(const Material& material, const State& state, int threads = 1);
   /// As it was when it was kept.
-  Dynamics(const Material& material, ArchiveReader& archive);
+  Dynamics(const Material& material, ArchiveReader& archive, int threads = 1);
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {
     archive(self.grains_, self.cell_, self.neighbours_, self.dt_, self.time_, self.steps_);
@@ -78,6 +82,11 @@ class Dynamics {
  private:
   /// dv/dt of grain i, from its force and the velocity the force was computed with.
   Quad acceleration(std::size_t i) const;
+  double advance_grains(const Cell& next);
+  void assemble(int threads);
+  void update_list(double lookahead);
+  void deal_out();
+  void compute_forces();
 
   Material material_;
   LinearContact law_;
@@ -87,6 +96,8 @@ class Dynamics {
   double dt_ = 0;
   double time_;
   std::uint64_t steps_;
+  std::shared_ptr<ThreadPool> team_;  ///< only of several threads; copies take turns with it
+  std::vector<Share> shares_;         ///< one for each of them; scratch
 };
 
 /// A time step: `fraction` of the contact duration of two grains of the smallest radius present, us.

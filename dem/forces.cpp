@@ -66,10 +66,8 @@ HWY_INLINE void act(Wide strength, const Wide (&branch)[4], Wide (&total)[4], co
 
 /// Each group of grains stays in registers, places, velocities and forces, while it meets its partners.
 template <bool tilted>
-void add_forces_within(const Constants& constants, const GroupedPairs& list, Grains& grains) {
-  const Quad* const place = grains.place.data();
-  const Quad* const motion = grains.motion.data();
-  Quad* const force = grains.force.data();
+void add_forces_within(const Constants& constants, const Quad* place, const Quad* motion, const Groups& list,
+                       Quad* force) {
   for (const GroupedPairs::Group& group : list.groups)
     for (std::size_t half = 0; half < GroupedPairs::width; half += lanes) {
       const std::uint32_t* const grain = &group.grain[half];
@@ -79,9 +77,8 @@ void add_forces_within(const Constants& constants, const GroupedPairs& list, Gra
         motion_i[k] = rows(motion[grain[k]], motion[grain[k + second]]);
         total[k] = wide(0);
       }
-      const std::uint32_t* const end = list.partner.data() + group.last;
-      for (const std::uint32_t* j = list.partner.data() + group.first + half; j < end;
-           j += GroupedPairs::width) {
+      const std::uint32_t* const end = list.partner + group.last;
+      for (const std::uint32_t* j = list.partner + group.first + half; j < end; j += GroupedPairs::width) {
         Wide branch[4], velocity[4];
         for (std::size_t k = 0; k < 4; ++k) {
           branch[k] = mul_sub_from(constants.apart, rows(place[j[k]], place[j[k + second]]), place_i[k]);
@@ -113,11 +110,8 @@ HWY_INLINE void act_on_both(Wide strength, const Wide (&branch)[4], const Crossi
 }
 
 template <bool tilted>
-void add_forces_across(const Constants& constants, const CrossingPairs& list, const Quad* shifts,
-                       Grains& grains) {
-  const Quad* const place = grains.place.data();
-  const Quad* const motion = grains.motion.data();
-  Quad* const force = grains.force.data();
+void add_forces_across(const Constants& constants, const Quad* place, const Quad* motion,
+                       const CrossingPairs& list, const Quad* shifts, Quad* force) {
   for (std::size_t p = 0; p < list.pairs.size(); p += lanes) {
     const CrossingPairs::Pair* const pair = &list.pairs[p];
     Wide branch[4], velocity[4];
@@ -136,22 +130,24 @@ void add_forces_across(const Constants& constants, const CrossingPairs& list, co
 }
 
 template <bool tilted>
-void add_to_both(const LinearContact& law, const Pairs& pairs, const Mat3& gradient, const Quad* shifts,
-                 Grains& grains) {
+void add_to_each(const LinearContact& law, const Grains& grains, const Mat3& gradient, const Groups& within,
+                 const CrossingPairs& crossing, const Quad* shifts, Quad* force) {
   const auto both = [&](std::size_t a, std::size_t b) { return wide(gradient(a, b) + gradient(b, a)); };
   const Constants constants{
       law,       wide(gradient(0, 0)), wide(gradient(1, 1)), wide(gradient(2, 2)), both(1, 2), both(0, 2),
       both(0, 1)};
-  add_forces_within<tilted>(constants, pairs.within, grains);
-  add_forces_across<tilted>(constants, pairs.crossing, shifts, grains);
+  const Quad* const place = grains.place.data();
+  const Quad* const motion = grains.motion.data();
+  add_forces_within<tilted>(constants, place, motion, within, force);
+  add_forces_across<tilted>(constants, place, motion, crossing, shifts, force);
 }
 
-void add_all_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, const Quad* shifts,
-                    Grains& grains) {
+void add_forces(const LinearContact& law, const Grains& grains, const Cell& cell, const Groups& within,
+                const CrossingPairs& crossing, const Quad* shifts, Quad* force) {
   if (cell.tilted())
-    add_to_both<true>(law, pairs, cell.gradient(), shifts, grains);
+    add_to_each<true>(law, grains, cell.gradient(), within, crossing, shifts, force);
   else
-    add_to_both<false>(law, pairs, cell.gradient(), shifts, grains);
+    add_to_each<false>(law, grains, cell.gradient(), within, crossing, shifts, force);
 }
 
 }  // namespace grainlaw::dem::HWY_NAMESPACE
@@ -160,12 +156,30 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace grainlaw::dem {
 
-HWY_EXPORT(add_all_forces);
+HWY_EXPORT(add_forces);
 
 void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, Grains& grains) {
   const std::array<Quad, 27> shifts = cell.shifts();
   std::fill(grains.force.begin(), grains.force.end(), Quad{});
-  HWY_DYNAMIC_DISPATCH(add_all_forces)(law, pairs, cell, shifts.data(), grains);
+  HWY_DYNAMIC_DISPATCH(add_forces)
+  (law, grains, cell, {pairs.within.groups, pairs.within.partner.data()}, pairs.crossing, shifts.data(),
+   grains.force.data());
+}
+
+void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, Share& share,
+                    Grains& grains) {
+  const std::array<Quad, 27> shifts = cell.shifts();
+  const auto begin = share.force.begin() + share.first, end = share.force.begin() + share.last;
+  std::fill(begin, end, Quad{});
+  const auto add = [&](const Groups& within, const CrossingPairs& crossing) {
+    HWY_DYNAMIC_DISPATCH(add_forces)
+    (law, grains, cell, within, crossing, shifts.data(), share.force.data());
+  };
+  add({share.halo.groups, share.halo.partner.data()}, {});
+  const std::span<const GroupedPairs::Group> groups = pairs.within.groups;
+  add({groups.subspan(share.first_group, share.last_group - share.first_group), pairs.within.partner.data()},
+      share.crossing);
+  std::copy(begin, end, grains.force.begin() + share.first);
 }
 
 }  // namespace grainlaw::dem

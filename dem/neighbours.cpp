@@ -15,7 +15,6 @@ constexpr double rest_budget = 0.01;  // s_i of a grain at rest, in units of the
 constexpr double box_budget = 1e-3;   // 1 - e_min: the compression of the box that an inner list survives
 constexpr double outer_skin = 0.7;    // in units of the mean radius; less where the box is narrow
 constexpr double least_skin = 0.02;   // the narrowest outer skin worth listing
-constexpr std::uint32_t block = 64;   // grains that are grouped by their number of partners
 constexpr std::uint32_t most_told_apart = 31;  // numbers of partners
 constexpr double flight_share = 0.125;         // s_i at most this share of the outer skin, but of a flyer
 constexpr std::size_t most_flyers = 16;
@@ -220,6 +219,7 @@ void Neighbours::group() {
   within.groups.clear();
   within.partner.clear();
   within.count = near_begin_[count];
+  constexpr std::uint32_t block = GroupedPairs::block;
   std::array<std::uint32_t, block> sorted{};
   const auto partners_of = [this](std::uint32_t i) { return near_begin_[i + 1] - near_begin_[i]; };
   for (std::uint32_t first = 0; first < count; first += block) {

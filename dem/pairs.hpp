@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "grainlaw/dem/cell.hpp"
@@ -17,6 +18,8 @@ namespace grainlaw::dem {
 /// partners.
 struct GroupedPairs {
   static constexpr std::size_t width = 8;
+  /// A group's grains lie in one of the runs of so many that begin at 0; groups stand in the order of these.
+  static constexpr std::uint32_t block = 64;
   struct Group {
     std::array<std::uint32_t, width> grain;
     std::uint32_t first, last;  ///< their partners: eight at a time, one for each grain
@@ -32,6 +35,12 @@ struct GroupedPairs {
       for (std::uint32_t p = group.first; p < group.last; ++p)
         if (const std::uint32_t i = group.grain[p % width]; partner[p] != i) f(i, partner[p]);
   }
+};
+
+/// Some groups of a list, and its partners.
+struct Groups {
+  std::span<const GroupedPairs::Group> groups;
+  const std::uint32_t* partner;
 };
 
 /// Pairs that meet through a face of the box, eight at a time.

@@ -1,0 +1,79 @@
+// A team of threads that do the same thing to parts of one whole, again and again: many times per
+// millisecond.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+namespace grainlaw::dem {
+
+/// Whoever calls run() is the first of the team; the others wait for it, for a short while awake, then
+/// asleep, so that a team without work costs nothing and one between two steps loses no time.
+class ThreadPool {
+ public:
+  explicit ThreadPool(int threads) {
+    for (int t = 1; t < threads; ++t) others_.emplace_back([this, t] { serve(t); });
+  }
+  ~ThreadPool() {
+    start(nullptr, nullptr);
+    for (std::thread& other : others_) other.join();
+  }
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  int threads() const { return static_cast<int>(others_.size()) + 1; }
+
+  /// Calls f(0) ... f(threads - 1), each on a thread of its own, and returns when all have. f must not throw.
+  template <class F>
+  void run(F&& f) {
+    using Function = std::remove_reference_t<F>;
+    start([](void* function, int t) { (*static_cast<Function*>(function))(t); }, std::addressof(f));
+    f(0);
+    for (int left = left_.load(std::memory_order_acquire); left != 0;
+         left = left_.load(std::memory_order_acquire))
+      wait_while(left_, left);
+  }
+
+ private:
+  using Job = void (*)(void*, int);
+
+  void start(Job job, void* function) {
+    job_ = job;
+    function_ = function;
+    left_.store(static_cast<int>(others_.size()), std::memory_order_relaxed);
+    turn_.fetch_add(1, std::memory_order_release);
+    turn_.notify_all();
+  }
+
+  void serve(int t) {
+    for (int turn = 0;; ++turn) {
+      wait_while(turn_, turn);
+      if (job_ == nullptr) return;
+      job_(function_, t);
+      if (left_.fetch_sub(1, std::memory_order_acq_rel) == 1) left_.notify_one();
+    }
+  }
+
+  static void wait_while(const std::atomic<int>& what, int value) {
+    constexpr int looks = 4000;  // some 50 us
+    for (int n = 0; n < looks; ++n) {
+      if (what.load(std::memory_order_acquire) != value) return;
+#if defined(__x86_64__)
+      __builtin_ia32_pause();
+#endif
+    }
+    what.wait(value, std::memory_order_acquire);
+  }
+
+  Job job_ = nullptr;
+  void* function_ = nullptr;
+  alignas(64) std::atomic<int> turn_{0};  ///< how often work was given out; it may wrap around
+  alignas(64) std::atomic<int> left_{0};  ///< how many of the others are still at it
+  std::vector<std::thread> others_;
+};
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,57 @@
+// Threads share a step without a trace in its result.
+#include "grainlaw/dem/shares.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "grainlaw/dem/thread_pool.hpp"
+#include "packings.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+/// A jammed packing under D2 with grains that fly about, lists and order of grains made anew many times.
+State flow(int threads) {
+  const Material m;
+  const State start = test::squeezed(m, 500, 6, 0.7, 0.1);
+  Dynamics dynamics(m, start, threads);
+  const double dt = time_step(m, dynamics.grains().smallest_radius(), 0.1), rate = 1e-2;
+  dynamics.start(dt, {rate, -rate, 0});
+  for (int n = 1; n <= 400; ++n) {
+    const double stretch = std::exp(rate * dt * n);
+    dynamics.step({start.box[0] * stretch, start.box[1] / stretch, start.box[2]}, {rate, -rate, 0});
+  }
+  EXPECT_GT(dynamics.neighbours().updates(), 20u);
+  EXPECT_GT(dynamics.neighbours().sorts(), 2u);
+  return dynamics.state();
+}
+
+TEST(Shares, TheirNumberChangesNoBitOfTheMotion) {
+  const State alone = flow(1);
+  for (const int threads : {2, 3}) EXPECT_TRUE(flow(threads) == alone) << threads << " threads";
+}
+
+TEST(Shares, MoreThreadsThanBlocksOfGrainsDoNoHarm) {
+  const Material m;
+  const State start = test::squeezed(m, 61, 4, 0.7);
+  const auto end = [&](int threads) {
+    Dynamics dynamics(m, start, threads);
+    dynamics.start(0.02, {});
+    for (int n = 0; n < 50; ++n) dynamics.step();
+    return dynamics.state();
+  };
+  EXPECT_TRUE(end(4) == end(1));
+}
+
+TEST(ThreadPool, RunsEveryPartEachTime) {
+  ThreadPool team(3);
+  ASSERT_EQ(team.threads(), 3);
+  std::array<int, 3> sum{};
+  for (int n = 1; n <= 200; ++n) team.run([&](int t) { sum[static_cast<std::size_t>(t)] += n * (t + 1); });
+  EXPECT_EQ(sum, (std::array<int, 3>{20100, 40200, 60300}));
+}
+
+}  // namespace
+}  // namespace grainlaw::dem
