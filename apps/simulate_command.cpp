@@ -26,10 +26,17 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string scene, output;
+  std::string scene, output, threads;
   RunArguments run;
   bool explain = false;
 };
+
+constexpr int most_threads = 1024;
+
+int threads_of(const Arguments& arguments) {
+  if (arguments.threads.empty()) return 1;
+  return static_cast<int>(read_whole_number("--threads", arguments.threads, 1, most_threads));
+}
 
 /// The folder as an absolute path without "." and "/" at its end, so that names can be put after it.
 fs::path folder_of(const std::string& argument) {
@@ -80,6 +87,7 @@ void make_ready(const fs::path& part, const dem::Scene& scene, const Arguments& 
 
 std::string resume_command(const Arguments& arguments) {
   return quoted(program_name()) + " simulate " + quoted(arguments.scene) + " -o " + quoted(arguments.output) +
+         (arguments.threads.empty() ? "" : " --threads " + quoted(arguments.threads)) +
          arguments.run.words() + " --resume";
 }
 
@@ -87,6 +95,7 @@ std::string resume_command(const Arguments& arguments) {
 dem::RunHooks hooks(Terminal& terminal, const Interrupt& interrupt, const Arguments& arguments) {
   dem::RunHooks hooks;
   hooks.checkpoint_every = arguments.run.checkpoint_every();
+  hooks.threads = threads_of(arguments);
   hooks.stop = &interrupt.stop();
   if (terminal.live())
     hooks.progress = [&terminal](double fraction, const std::string& stage) {
@@ -98,6 +107,7 @@ dem::RunHooks hooks(Terminal& terminal, const Interrupt& interrupt, const Argume
 int run(const Arguments& arguments) {
   arguments.run.force_simd();
   arguments.run.checkpoint_every();  // bad input is refused before anything is made
+  threads_of(arguments);
   const dem::Scene scene = dem::Scene::load(arguments.scene);
   if (arguments.explain) {
     write_stdout(explanation(scene, dem::cost_of(scene)));
@@ -145,6 +155,10 @@ Action add_simulate(CLI::App& program) {
       ->type_name("DIR");
   command->add_flag("--explain", arguments->explain,
                     "only say what the scene turns on and what it will take, from a trial on this machine");
+  command
+      ->add_option("--threads", arguments->threads,
+                   "that share each step; the record does not depend on their number (default: 1)")
+      ->type_name("N");
   arguments->run.add_to(*command, "go on where an interrupted run stopped");
   command->footer(
       "Examples:\n"

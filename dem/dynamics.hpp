@@ -65,6 +65,7 @@ class Dynamics {
   double time() const { return time_; }  ///< us
   std::uint64_t steps() const { return steps_; }
   std::size_t count() const { return grains_.count(); }
+  int threads() const { return team_ ? team_->threads() : 1; }
   const Grains& grains() const { return grains_; }  ///< sorted in space, not as in the State
   const Neighbours& neighbours() const { return neighbours_; }
   const LinearContact& law() const { return law_; }

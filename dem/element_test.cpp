@@ -87,7 +87,7 @@ ElementTest::ElementTest(const Scene& scene, std::filesystem::path out_dir, cons
     : scene_(scene),
       out_dir_(std::move(out_dir)),
       place_(Place::at_the_beginning(nu_start(scene, start))),
-      dynamics_(scene.material, start),
+      dynamics_(scene.material, start, hooks.threads),
       longest_(scene, dynamics_.grains().smallest_radius()),
       stages_(plan_stages(scene, place_.nu_start, longest_)),
       recorder_(scene, out_dir_, place_.nu_start),
@@ -101,7 +101,7 @@ ElementTest::ElementTest(const Scene& scene, std::filesystem::path out_dir, cons
     : scene_(scene),
       out_dir_(std::move(out_dir)),
       place_(archive.take<Place>()),
-      dynamics_(scene.material, archive),
+      dynamics_(scene.material, archive, hooks.threads),
       longest_(scene, dynamics_.grains().smallest_radius()),
       stages_(plan_stages(scene, place_.nu_start, longest_)),
       recorder_(scene, out_dir_, place_.nu_start, archive),
@@ -127,7 +127,7 @@ double ElementTest::nu_start(const Scene& scene, const State& start) {
 
 /// The path starts from the prepared packing as a test does that reads it from a snapshot.
 void ElementTest::begin_path() {
-  if (place_.stage > 0) dynamics_ = Dynamics(scene_.material, dynamics_.state());
+  if (place_.stage > 0) dynamics_ = Dynamics(scene_.material, dynamics_.state(), dynamics_.threads());
   recorder_.begin_path(dynamics_);
 }
 

@@ -19,6 +19,8 @@ struct RunHooks {
   const std::atomic<bool>* stop = nullptr;
   /// Seconds from one checkpoint to the next; 0: one at every look, some ten milliseconds apart.
   double checkpoint_every = 60;
+  /// That share each step. The record does not depend on how many they are.
+  int threads = 1;
 };
 
 class Watch {

@@ -153,7 +153,8 @@ TEST_F(ControlledDrive, GoesOnFromACheckpoint) {
   const Scene scene = Scene::read(Reader(parse_json(json, "scene.json"), "scene.json"), "");
   run_element_test(scene, dir / "a");
   int stops = 0;
-  for (RunSummary part{.stopped = true}; part.stopped; ++stops) {
+  RunSummary part;
+  for (part.stopped = true; part.stopped; ++stops) {
     std::atomic<bool> stop = false;
     int looks = 0;
     RunHooks hooks;

@@ -16,12 +16,13 @@ namespace {
 State flow(int threads) {
   const Material m;
   const State start = test::squeezed(m, 500, 6, 0.7, 0.1);
+  const Vec3 edges = start.box.diagonal();
   Dynamics dynamics(m, start, threads);
   const double dt = time_step(m, dynamics.grains().smallest_radius(), 0.1), rate = 1e-2;
   dynamics.start(dt, {rate, -rate, 0});
   for (int n = 1; n <= 400; ++n) {
     const double stretch = std::exp(rate * dt * n);
-    dynamics.step({start.box[0] * stretch, start.box[1] / stretch, start.box[2]}, {rate, -rate, 0});
+    dynamics.step({edges[0] * stretch, edges[1] / stretch, edges[2]}, {rate, -rate, 0});
   }
   EXPECT_GT(dynamics.neighbours().updates(), 20u);
   EXPECT_GT(dynamics.neighbours().sorts(), 2u);
