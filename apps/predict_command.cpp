@@ -1,6 +1,7 @@
 // grainlaw predict: the law as a material point along a path.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -83,17 +84,32 @@ std::vector<fs::path> inputs_of(const Arguments& arguments) {
   return {arguments.parameters, path, path / "scene.json", path / "record.csv"};
 }
 
+/// Along a record: row by row, unless `even_rows` are asked for. Under stress control along the strain that
+/// was measured.
+model::Prediction predict_along(const model::ParameterSet& parameters, const Followed& followed,
+                                const model::PredictOptions& options, bool even_rows) {
+  const Path& path = followed.path;
+  if (!followed.record || (even_rows && !path.by_stress())) return model::predict(parameters, path, options);
+  if (even_rows)
+    throw Error(
+        "", "--rows",
+        "must be left out: the path is under stress control, and the law follows the rows of the record");
+  if (!path.by_stress())
+    return model::predict(parameters, path, model::samples_of(*followed.record, path, *path.start.nu),
+                          options);
+  const auto measured = model::measured_path(*followed.record, path);
+  auto prediction = model::predict(parameters, measured.path, measured.samples, options);
+  auto& segments = prediction.record["segment"];
+  std::copy_n(measured.segments.begin(), segments.size(), segments.begin());
+  return prediction;
+}
+
 int run(const Arguments& arguments) {
   if (!arguments.output.empty()) check_output("-o", arguments.output, inputs_of(arguments));
   const auto options = read_options(arguments);
   const auto parameters = model::ParameterSet::load(arguments.parameters);
   const Followed followed = read_followed(arguments.path);
-  const bool by_record = followed.record && arguments.rows.empty();
-  const model::Prediction prediction =
-      by_record ? model::predict(parameters, followed.path,
-                                 model::samples_of(*followed.record, followed.path, *followed.path.start.nu),
-                                 options)
-                : model::predict(parameters, followed.path, options);
+  const model::Prediction prediction = predict_along(parameters, followed, options, !arguments.rows.empty());
   Terminal terminal;
   if (prediction.status.failed()) {
     echo_start(terminal, prediction);

@@ -129,7 +129,7 @@ int run(const Arguments& arguments) {
   terminal.say(fmt::format(
       "wrote {} in {}, {}", (fs::path(arguments.output) / "record.csv").lexically_normal().string(),
       time_text(summary.wall_s), speed_text(static_cast<double>(summary.particle_steps) / summary.wall_s)));
-  return all_well;
+  return summary.cut_short.empty() ? all_well : failed;
 }
 
 }  // namespace

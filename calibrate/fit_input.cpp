@@ -79,6 +79,12 @@ TestRecord read_record(const fs::path& dir, Role role) {
   return test;
 }
 
+bool under_stress_control(const fs::path& dir) {
+  const fs::path scene = dir / "scene.json";
+  Reader reader(load_json(scene), scene.string());
+  return Path::read(reader.object("path")).by_stress();
+}
+
 RecordFolder read_campaign(const fs::path& dir) {
   const Campaign campaign = Campaign::load(dir / "campaign.json");
   RecordFolder out;
@@ -114,7 +120,13 @@ RecordFolder read_folder(const fs::path& dir) {
     }
   }
   std::sort(found.begin(), found.end());
-  for (const fs::path& record : found) out.tests.push_back(read_record(record, Role::fit));
+  for (const fs::path& record : found) {
+    if (under_stress_control(record))
+      out.left_out.push_back({record.filename().string(), Role::fit,
+                              "its path is under stress control, and the law follows strains"});
+    else
+      out.tests.push_back(read_record(record, Role::fit));
+  }
   return out;
 }
 

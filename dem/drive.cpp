@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grainlaw/dem/controlled_drive.hpp"
+
 namespace grainlaw::dem {
 
 namespace {
@@ -65,7 +67,9 @@ void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& s
 
 void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
            const AfterStep& after_step) {
-  if (leg.mode == Mode::relax)
+  if (leg.controlled())
+    follow_controlled(dynamics, leg, plan, state, after_step);
+  else if (leg.mode == Mode::relax)
     relax(dynamics, leg, plan, state, after_step);
   else
     follow(dynamics, leg, plan, state, after_step);

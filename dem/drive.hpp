@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "grainlaw/dem/dynamics.hpp"
+#include "grainlaw/dem/servo.hpp"
 #include "grainlaw/element/path.hpp"
 
 namespace grainlaw::dem {
@@ -31,18 +32,41 @@ struct StepPlan {
 /// At least `least_steps` (and one) of equal length, each no longer than `longest_step` us.
 StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_steps);
 
-/// How far a leg has been followed, and all that its next step needs to know beyond the grains and their box.
-/// Whatever drives a leg keeps its state here, so that the leg can be left after any step and gone on with.
-struct LegState {
-  std::uint64_t step = 0;       ///< steps taken; 0: the leg has not begun
-  Mat3 start_edges;             ///< H where it began, mm
-  double kinetic_at_start = 0;  ///< for relax, ug mm^2/us^2
+/// Where a leg is whose strain is not known in advance (see controlled_drive.hpp).
+struct ControlState {
+  double own_time = 0;     ///< of the leg's profile: how long it would have taken unhindered, us
+  double speed = 1;        ///< of a steered rate over the segment's
+  double progress = 0;     ///< share of the leg that is done, at the last look
+  bool looked = false;     ///< whether the last step ended with a look at stress and energies
+  bool on_target = false;  ///< whether all stresses were within tolerance then
+  bool lost = false;       ///< whether the leg ended because a stress could not be reached
+  ServoState servo;
 
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {
-    archive(self.step, self.start_edges, self.kinetic_at_start);
+    archive(self.own_time, self.speed, self.progress, self.looked, self.on_target, self.lost, self.servo);
   }
 };
+
+/// How far a leg has been followed, and all that its next step needs to know beyond the grains and their box.
+/// Whatever drives a leg keeps its state here, so that the leg can be left after any step and gone on with.
+struct LegState {
+  std::uint64_t step = 0;           ///< steps taken; 0: the leg has not begun
+  Mat3 start_edges;                 ///< H where it began, mm
+  double kinetic_at_start = 0;      ///< for relax, ug mm^2/us^2
+  double eps_vol = 0, eps_dev = 0;  ///< of the path where it began
+  ControlState control;             ///< of a controlled leg
+
+  template <class Self, class Archive>
+  static void keep(Self& self, Archive& archive) {
+    archive(self.step, self.start_edges, self.kinetic_at_start, self.eps_vol, self.eps_dev, self.control);
+  }
+};
+
+/// Strain of the box since the leg began, per axis.
+Strain3 leg_strain(const Dynamics& dynamics, const LegState& state);
+/// Deviatoric strain of the path where the box is now, on a controlled leg.
+double leg_eps_dev(const Dynamics& dynamics, const Leg& leg, const LegState& state);
 
 /// Called after each step with its number, counted from 1; false leaves the leg there.
 using AfterStep = std::function<bool(std::uint64_t step)>;

@@ -9,6 +9,7 @@
 #include "grainlaw/dem/archive.hpp"
 #include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/contact_law.hpp"
+#include "grainlaw/dem/glance.hpp"
 #include "grainlaw/dem/grains.hpp"
 #include "grainlaw/dem/measure.hpp"
 #include "grainlaw/dem/neighbours.hpp"
@@ -68,6 +69,7 @@ class Dynamics {
   const Grains& grains() const { return grains_; }  ///< sorted in space, not as in the State
   const Neighbours& neighbours() const { return neighbours_; }
   const LinearContact& law() const { return law_; }
+  const Material& material() const { return material_; }
 
   /// Fluctuation velocities of the full step, mm/us, in the order of grains().
   std::vector<Quad> velocities() const;
@@ -77,6 +79,9 @@ class Dynamics {
   Sym6 static_stress() const;
   /// measure().kinetic and elastic, to the last bit.
   Energies energies() const;
+  /// Both in one pass, with the stiffness of the network: what servo and steering read. Velocities as in
+  /// static_stress().
+  Glance glance() const { return dem::glance(law_, grains_, cell_, neighbours_.pairs()); }
   /// In the order of the State it began with; positions wrapped into the box.
   State state() const;
 

@@ -7,6 +7,7 @@
 
 #include "grainlaw/dem/archive.hpp"
 #include "grainlaw/dem/checkpoint.hpp"
+#include "grainlaw/dem/controlled_drive.hpp"
 #include "grainlaw/dem/crystal_order.hpp"
 #include "grainlaw/dem/drive.hpp"
 #include "grainlaw/dem/preparation.hpp"
@@ -61,7 +62,10 @@ class ElementTest {
   static State first_state(const Scene& scene);
   static double nu_start(const Scene& scene, const State& start);
   void begin_path();
+  void plan_again();
   void walk();
+  void leave_leg();
+  void cut_short();
   double wall_s() const { return place_.wall_s + seconds_since(begin_); }
   void write_checkpoint() const;
   void write_record(const RunSummary& summary) const;
@@ -75,6 +79,7 @@ class ElementTest {
   std::vector<Stage> stages_;
   Recorder recorder_;
   Watch watch_;
+  std::string cut_short_;  ///< why it ended early, if it did
 };
 
 ElementTest::ElementTest(const Scene& scene, std::filesystem::path out_dir, const RunHooks& hooks,
@@ -126,22 +131,61 @@ void ElementTest::begin_path() {
   recorder_.begin_path(dynamics_);
 }
 
+/// Plans the stage anew where the strain before it was not known in advance.
+void ElementTest::plan_again() {
+  Stage& stage = stages_[place_.stage];
+  const double third = place_.leg.eps_vol / 3;
+  Waypoint from(place_.nu_start);
+  from.move({third, third, third}, {});
+  from.eps_dev = place_.leg.eps_dev;
+  for (std::size_t i = 0; i < place_.stage; ++i)
+    if (const auto& axis = stages_[i].leg.axis) from.axis = axis;
+  stage = stage_from(scene_, *stage.segment, from, longest_);
+  if (place_.leg.step == 0) check_width({stage}, dynamics_.state(), scene_);
+}
+
 /// Takes the stage to its end, or to where the run is told to stop.
 void ElementTest::walk() {
+  const std::uint64_t announced = stages_[place_.stage].stepping.steps;
+  if (stages_[place_.stage].segment && scene_.path.by_stress()) plan_again();
   const Stage& stage = stages_[place_.stage];
-  watch_.enter(stage.name, stage.stepping.steps, place_.leg.step);
-  recorder_.enter(dynamics_, stage, place_.leg.step);
-  drive(dynamics_, stage.leg, stage.stepping, place_.leg, [&](std::uint64_t step) {
-    recorder_.after_step(dynamics_, stage, step);
+  watch_.enter(stage.name, announced, place_.leg.step);
+  recorder_.enter(dynamics_, stage, place_.leg);
+  drive(dynamics_, stage.leg, stage.stepping, place_.leg, [&](std::uint64_t) {
+    recorder_.after_step(dynamics_, stage, place_.leg);
     if (!watch_.step()) return false;
     if (watch_.checkpoint_due()) write_checkpoint();
     return true;
   });
   if (watch_.stopped()) return;
-  recorder_.leave(dynamics_, stage);
   watch_.leave();
+  if (place_.leg.control.lost) return cut_short();
+  recorder_.leave(dynamics_, stage, place_.leg);
+  leave_leg();
+}
+
+/// On to the next stage, whose leg begins with the strain that this one ended with.
+void ElementTest::leave_leg() {
+  const Leg& leg = stages_[place_.stage].leg;
+  LegState next;
+  next.eps_vol = leg.eps_vol[1];
+  next.eps_dev = leg.eps_dev[1];
+  if (leg.controlled()) {
+    const Strain3 strain = leg_strain(dynamics_, place_.leg);
+    next.eps_vol = leg.eps_vol[0] + strain[0] + strain[1] + strain[2];
+    next.eps_dev = leg_eps_dev(dynamics_, leg, place_.leg);
+  }
+  if (!stages_[place_.stage].segment) next.eps_vol = 0;  // the path begins after the preparation
   ++place_.stage;
-  place_.leg = {};
+  place_.leg = next;
+}
+
+/// Ends the test on a leg that cannot go on.
+void ElementTest::cut_short() {
+  const Stage& stage = stages_[place_.stage];
+  cut_short_ = "segment " + std::to_string(*stage.segment) + " (" + name_of(stage.leg.mode) +
+               "): " + why_lost(scene_.material, stage.leg, place_.leg) + "; the test ends there";
+  place_.stage = stages_.size();
 }
 
 void ElementTest::write_checkpoint() const {
@@ -164,7 +208,9 @@ RunSummary ElementTest::run() {
   summary.wall_s = wall_s();
   summary.particle_steps = watch_.particle_steps();
   if (summary.stopped) return summary;
+  summary.cut_short = cut_short_;
   summary.warnings = recorder_.warnings();
+  if (!cut_short_.empty()) summary.warnings.push_back(cut_short_);
   if (may_crystallise(scene_.material))
     summary.warnings.push_back(crystal_warning(scene_.material, dynamics_.state()));
   write_record(summary);

@@ -16,6 +16,8 @@ struct RunSummary {
   std::uint64_t particle_steps = 0;
   std::vector<std::string> warnings;
   bool stopped = false;
+  /// A sentence, where a stress target could not be reached: the record ends there. Empty where all is well.
+  std::string cut_short;
 };
 
 /// Writes into `out_dir`, which must not exist, be empty, or hold a checkpoint of this very test: then the

@@ -5,11 +5,26 @@
 #include <utility>
 
 #include "grainlaw/dem/snapshot_resume.hpp"
+#include "grainlaw/element/error.hpp"
 
 namespace grainlaw::dem {
 
+namespace {
+
+/// Deviatoric strain of the path where the box is.
+double eps_dev(const Dynamics& dynamics, const Stage& stage, const LegState& state) {
+  const Leg& leg = stage.leg;
+  if (leg.controlled()) return leg_eps_dev(dynamics, leg, state);
+  return leg.eps_dev[0] + stage.progress(state.step) * (leg.eps_dev[1] - leg.eps_dev[0]);
+}
+
+}  // namespace
+
 Recorder::Recorder(const Scene& scene, std::filesystem::path dir, double nu_start)
-    : dir_(std::move(dir)), nu_start_(nu_start), rows_(scene.material, scene.legs(nu_start), nu_start) {}
+    : dir_(std::move(dir)),
+      requests_(scene.measure.snapshots),
+      nu_start_(nu_start),
+      rows_(scene.material, scene.legs(nu_start), nu_start) {}
 
 Recorder::Recorder(const Scene& scene, std::filesystem::path dir, double nu_start, ArchiveReader& archive)
     : Recorder(scene, std::move(dir), nu_start) {
@@ -25,31 +40,83 @@ void Recorder::begin_path(const Dynamics& dynamics) {
   rows_.append(dynamics.measure(), 0, 0, 0);
 }
 
-void Recorder::enter(const Dynamics& dynamics, const Stage& stage, std::uint64_t taken) {
-  const auto after = [taken](const Steps& steps) {
-    return taken == 0 ? steps.begin() : std::upper_bound(steps.begin(), steps.end(), taken);
+void Recorder::enter(const Dynamics& dynamics, const Stage& stage, const LegState& leg) {
+  const auto after = [&leg](const Steps& steps) {
+    return leg.step == 0 ? steps.begin() : std::upper_bound(steps.begin(), steps.end(), leg.step);
   };
   next_row_ = after(stage.rows);
   next_snapshot_ = after(stage.snapshots);
-  if (taken > 0 || next_snapshot_ == stage.snapshots.end() || *next_snapshot_ != 0) return;
-  take_snapshot(dynamics, stage, 0);
+  if (leg.step > 0) return;
+  rows_done_ = 0;
+  wanted_.clear();
+  for (std::uint64_t i = 0; i < requests_.size(); ++i)
+    if (stage.leg.controlled() && requests_[i].segment == stage.segment) wanted_.push_back(i);
+  if (next_snapshot_ == stage.snapshots.end() || *next_snapshot_ != 0) return;
+  take_snapshot(dynamics, stage, eps_dev(dynamics, stage, leg));
   ++next_snapshot_;
 }
 
-void Recorder::after_step(const Dynamics& dynamics, const Stage& stage, std::uint64_t step) {
-  if (next_row_ != stage.rows.end() && *next_row_ == step) {
-    write_row(dynamics, stage, stage.progress(step));
+void Recorder::after_step(const Dynamics& dynamics, const Stage& stage, const LegState& leg) {
+  if (stage.leg.controlled()) return after_controlled_step(dynamics, stage, leg);
+  if (next_row_ != stage.rows.end() && *next_row_ == leg.step) {
+    write_row(dynamics, stage, eps_dev(dynamics, stage, leg));
     ++next_row_;
   }
-  if (next_snapshot_ != stage.snapshots.end() && *next_snapshot_ == step) {
-    take_snapshot(dynamics, stage, stage.progress(step));
+  if (next_snapshot_ != stage.snapshots.end() && *next_snapshot_ == leg.step) {
+    take_snapshot(dynamics, stage, eps_dev(dynamics, stage, leg));
     ++next_snapshot_;
   }
 }
 
-void Recorder::leave(const Dynamics& dynamics, const Stage& stage) {
-  if (next_row_ != stage.rows.end()) write_row(dynamics, stage, 1);
-  if (next_snapshot_ != stage.snapshots.end()) take_snapshot(dynamics, stage, 1);
+/// Rows and snapshots wait until the stresses are on target, as the driven axes do.
+void Recorder::after_controlled_step(const Dynamics& dynamics, const Stage& stage, const LegState& leg) {
+  if (!leg.control.looked || !leg.control.on_target) return;
+  const auto due = static_cast<std::uint64_t>(leg.control.progress * static_cast<double>(stage.row_count));
+  for (; rows_done_ < std::min(due, stage.row_count); ++rows_done_)
+    write_row(dynamics, stage, eps_dev(dynamics, stage, leg));
+  const auto reached = std::remove_if(wanted_.begin(), wanted_.end(), [&](std::uint64_t i) {
+    return passed(requests_[i], dynamics, stage, leg);
+  });
+  if (reached == wanted_.end()) return;
+  take_snapshot(dynamics, stage, eps_dev(dynamics, stage, leg));
+  wanted_.erase(reached, wanted_.end());
+}
+
+/// Whether the wanted value lies between the beginning of the leg and now.
+bool Recorder::passed(const SnapshotRequest& wanted, const Dynamics& dynamics, const Stage& stage,
+                      const LegState& leg) const {
+  const auto between = [](double value, double begin, double now) {
+    return (value - begin) * (now - value) >= 0;
+  };
+  if (wanted.eps_dev) return between(*wanted.eps_dev, stage.leg.eps_dev[0], eps_dev(dynamics, stage, leg));
+  if (!wanted.nu) return false;
+  const Strain3 strain = leg_strain(dynamics, leg);
+  const double begin = stage.leg.eps_vol[0];
+  return between(std::log(*wanted.nu / nu_start_), begin, begin + strain[0] + strain[1] + strain[2]);
+}
+
+void Recorder::leave(const Dynamics& dynamics, const Stage& stage, const LegState& leg) {
+  const double strain = stage.leg.controlled() ? eps_dev(dynamics, stage, leg) : stage.leg.eps_dev[1];
+  if (next_row_ != stage.rows.end() || rows_done_ < stage.row_count) write_row(dynamics, stage, strain);
+  bool at_end = next_snapshot_ != stage.snapshots.end();
+  for (const std::uint64_t i : wanted_)
+    if (requests_[i].nu || requests_[i].eps_dev)
+      missed_.push_back(i);
+    else
+      at_end = true;
+  if (at_end) take_snapshot(dynamics, stage, strain);
+  wanted_.clear();
+}
+
+std::vector<std::string> Recorder::warnings() const {
+  std::vector<std::string> list = rows_.warnings();
+  for (const std::uint64_t i : missed_) {
+    const SnapshotRequest& missed = requests_[i];
+    list.push_back("segment " + std::to_string(missed.segment) + " never came to " +
+                   (missed.nu ? "nu = " + to_text(*missed.nu) : "eps_dev = " + to_text(*missed.eps_dev)) +
+                   ", so there is no snapshot of it");
+  }
+  return list;
 }
 
 void Recorder::flush() const {
@@ -57,16 +124,16 @@ void Recorder::flush() const {
   if (begun()) record().write_csv(dir_ / rows_file);
 }
 
-void Recorder::write_row(const Dynamics& dynamics, const Stage& stage, double progress) {
-  rows_.append(dynamics.measure(), stage.segment.value(), progress, dynamics.time() - path_begin_);
+void Recorder::write_row(const Dynamics& dynamics, const Stage& stage, double eps_dev) {
+  rows_.append(dynamics.measure(), stage.segment.value(), eps_dev, dynamics.time() - path_begin_);
 }
 
-void Recorder::take_snapshot(const Dynamics& dynamics, const Stage& stage, double progress) {
+void Recorder::take_snapshot(const Dynamics& dynamics, const Stage& stage, double eps_dev) {
   const State state = dynamics.state();
   if (!snapshots_) snapshots_ = std::make_unique<SnapshotWriter>(snapshot_file(), state.radius);
   const std::size_t segment = stage.segment.value();
   const double nu = state.volume_fraction();
-  snapshots_->append(state, {nu, std::log(nu / nu_start_), rows_.eps_dev(segment, progress), segment});
+  snapshots_->append(state, {nu, std::log(nu / nu_start_), eps_dev, segment});
   ++frames_;
 }
 

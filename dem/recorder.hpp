@@ -29,35 +29,42 @@ class Recorder {
   /// The first row: the start of the path.
   void begin_path(const Dynamics& dynamics);
   bool begun() const { return rows_.record().rows() > 0; }
-  /// What is to be written down on `stage`, of which so many steps are taken.
-  void enter(const Dynamics& dynamics, const Stage& stage, std::uint64_t taken);
-  void after_step(const Dynamics& dynamics, const Stage& stage, std::uint64_t step);
+  /// What is to be written down on `stage`, of which `leg` says how far it is.
+  void enter(const Dynamics& dynamics, const Stage& stage, const LegState& leg);
+  void after_step(const Dynamics& dynamics, const Stage& stage, const LegState& leg);
   /// What is left, where a relaxation ended early.
-  void leave(const Dynamics& dynamics, const Stage& stage);
+  void leave(const Dynamics& dynamics, const Stage& stage, const LegState& leg);
 
   /// Brings all snapshots to the disk, and the rows so far into rows.csv.
   void flush() const;
   const Record& record() const { return rows_.record(); }
-  std::vector<std::string> warnings() const { return rows_.warnings(); }
+  std::vector<std::string> warnings() const;
 
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {
-    archive(self.path_begin_, self.rows_, self.frames_);
+    archive(self.path_begin_, self.rows_, self.frames_, self.rows_done_, self.wanted_, self.missed_);
   }
 
  private:
   std::filesystem::path snapshot_file() const { return dir_ / "snapshots.h5"; }
   using Steps = std::vector<std::uint64_t>;
-  void write_row(const Dynamics& dynamics, const Stage& stage, double progress);
-  void take_snapshot(const Dynamics& dynamics, const Stage& stage, double progress);
+  void after_controlled_step(const Dynamics& dynamics, const Stage& stage, const LegState& leg);
+  bool passed(const SnapshotRequest& wanted, const Dynamics& dynamics, const Stage& stage,
+              const LegState& leg) const;
+  void write_row(const Dynamics& dynamics, const Stage& stage, double eps_dev);
+  void take_snapshot(const Dynamics& dynamics, const Stage& stage, double eps_dev);
 
   std::filesystem::path dir_;
+  std::vector<SnapshotRequest> requests_;
   double nu_start_;
   double path_begin_ = 0;  ///< us
   RowWriter rows_;
   std::unique_ptr<SnapshotWriter> snapshots_;
   std::uint64_t frames_ = 0;
   Steps::const_iterator next_row_, next_snapshot_;  ///< of the stage it is in
+  std::uint64_t rows_done_ = 0;                     ///< of the controlled stage it is in
+  Steps wanted_;  ///< requests that the controlled stage it is in has not come to, as indices
+  Steps missed_;  ///< those that a stage never came to
 };
 
 }  // namespace grainlaw::dem

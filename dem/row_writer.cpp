@@ -44,16 +44,11 @@ std::string short_text(double x) {
 }  // namespace
 
 RowWriter::RowWriter(const Material& material, const std::vector<Leg>& legs, double nu_start)
-    : material_(material), legs_(legs), sign_(legs), nu_start_(nu_start), record_(record_columns()) {}
+    : material_(material), sign_(legs), nu_start_(nu_start), record_(record_columns()) {}
 
 double RowWriter::eps_vol(const Measurement& m) const { return std::log(m.nu / nu_start_); }
 
-double RowWriter::eps_dev(std::size_t segment, double progress) const {
-  const Leg& leg = legs_.at(segment);
-  return leg.eps_dev[0] + progress * (leg.eps_dev[1] - leg.eps_dev[0]);
-}
-
-void RowWriter::append(const Measurement& m, std::size_t segment, double progress, double time) {
+void RowWriter::append(const Measurement& m, std::size_t segment, double eps_dev, double time) {
   if (!std::isfinite(m.kinetic) || !std::isfinite(m.elastic))
     throw Error("the motion of the grains became unstable at nu = " + to_text(m.nu) +
                 ", t = " + to_text(time) + " us; take a smaller measure.time_step or rate");
@@ -64,7 +59,7 @@ void RowWriter::append(const Measurement& m, std::size_t segment, double progres
   Row row;
   row.set("segment", static_cast<double>(segment));
   row.set("eps_vol", eps_vol(m));
-  row.set("eps_dev", eps_dev(segment, progress));
+  row.set("eps_dev", eps_dev);
   row.set("nu", m.nu);
   row.set("P", pressure);
   row.set("sigma_dev", shear);

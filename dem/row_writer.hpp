@@ -18,12 +18,11 @@ class RowWriter {
   /// `nu_start` is the volume fraction at the start of the path.
   RowWriter(const Material& material, const std::vector<Leg>& legs, double nu_start);
 
-  /// One row: `progress` in [0, 1] along leg `segment`, `time` since the start of the path in us.
+  /// One row: `eps_dev` of the path where the box is, `time` since the start of the path in us.
   /// Throws Error if the grains have become unstable (energies not finite).
-  void append(const Measurement& m, std::size_t segment, double progress, double time);
+  void append(const Measurement& m, std::size_t segment, double eps_dev, double time);
 
   double eps_vol(const Measurement& m) const;
-  double eps_dev(std::size_t segment, double progress) const;
   const Record& record() const { return record_; }
 
   /// Sentences on E_k/E_p above 1e-3 and above 1 among the rows that bear load (at least half the grains have
@@ -42,7 +41,6 @@ class RowWriter {
   void set_columns(const std::vector<std::vector<double>>& columns);
 
   Material material_;
-  std::vector<Leg> legs_;
   SignConvention sign_;
   double nu_start_;
   Record record_;

@@ -272,14 +272,19 @@ void Scene::check_grains(const State& state) const {
 std::size_t Scene::record_rows() const {
   std::size_t rows = 1;
   for (const Segment& segment : path.segments)
-    rows += segment.mode == Mode::relax ? 1 : static_cast<std::size_t>(measure.rows);
+    rows += segment.only_waits() ? 1 : static_cast<std::size_t>(measure.rows);
   return rows;
 }
 
 std::vector<Leg> Scene::legs(double nu) const {
-  auto legs = path.legs(nu);
+  auto legs = path.nominal_legs(nu);
+  const auto& segments = path.segments;
+  const auto first_servo = std::find_if(segments.begin(), segments.end(),
+                                        [](const Segment& segment) { return segment.control.by_stress(); });
+  const auto certain = static_cast<std::size_t>(first_servo - segments.begin());
   for (std::size_t i = 0; i < measure.snapshots.size(); ++i)
-    check_target(measure.snapshots[i], i, legs.at(measure.snapshots[i].segment), nu, file);
+    if (const std::size_t segment = measure.snapshots[i].segment; segment < certain)
+      check_target(measure.snapshots[i], i, legs.at(segment), nu, file);
   return legs;
 }
 

@@ -94,8 +94,9 @@ struct Scene {
   /// Throws Error if grains read from a snapshot are not of this material's sizes (mean or spread off by more
   /// than 1 % of r_mean): the unit of stress k/(2<r>) would be wrong.
   void check_grains(const State& state) const;
-  /// The legs of the path for a start at `nu`. Throws Error where a target of the path cannot be reached from
-  /// there or a wanted snapshot lies outside its segment. Scene::read has done so already for a new packing;
+  /// The nominal legs of the path for a start at `nu`. Throws Error where a target of the path cannot be
+  /// reached from there or a wanted snapshot lies outside its segment, up to the first segment under stress
+  /// control. Scene::read has done so already for a new packing;
   /// for a snapshot, the volume fraction is known only when the frame has been read.
   std::vector<Leg> legs(double nu) const;
 };

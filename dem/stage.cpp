@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grainlaw/dem/controlled_drive.hpp"
 #include "grainlaw/dem/preparation.hpp"
 #include "grainlaw/element/error.hpp"
 
@@ -48,23 +49,28 @@ std::vector<std::uint64_t> snapshot_steps(const Leg& leg, std::size_t segment, c
   return list;
 }
 
-Stage stage_of_path(const std::vector<Leg>& legs, std::size_t index, const Measure& measure, double nu_start,
+Stage stage_of_path(const Scene& scene, const Leg& leg, std::size_t index, double nu_start,
                     double longest_step) {
   Stage stage;
-  stage.leg = legs[index];
+  stage.leg = leg;
   stage.segment = index;
-  stage.name =
-      name_of(stage.leg.mode) + " (" + std::to_string(index + 1) + " of " + std::to_string(legs.size()) + ")";
-  const bool at_rest = stage.leg.mode == Mode::relax;
-  const auto rows = at_rest ? std::uint64_t{1} : static_cast<std::uint64_t>(measure.rows);
-  stage.stepping = plan_steps(stage.leg, longest_step, at_rest ? 1 : least_steps_per_row * rows);
-  stage.rows = row_steps(stage.leg, rows, stage.stepping.steps);
-  stage.snapshots = snapshot_steps(stage.leg, index, measure, nu_start, stage.stepping.steps);
+  stage.name = name_of(leg.mode) + " (" + std::to_string(index + 1) + " of " +
+               std::to_string(scene.path.segments.size()) + ")";
+  const bool rests = !leg.drives();
+  const auto rows = rests ? std::uint64_t{1} : static_cast<std::uint64_t>(scene.measure.rows);
+  const std::uint64_t least = leg.controlled() ? look_interval : least_steps_per_row;
+  stage.stepping = plan_steps(leg, longest_step, rests ? 1 : least * rows);
+  if (leg.controlled()) {
+    stage.row_count = rows;
+  } else if (leg.duration > 0) {
+    stage.rows = row_steps(leg, rows, stage.stepping.steps);
+    stage.snapshots = snapshot_steps(leg, index, scene.measure, nu_start, stage.stepping.steps);
+  }
   return stage;
 }
 
 Stage stage_of_preparation(const std::string& name, const Leg& leg, double longest_step) {
-  return {name, leg, {}, plan_steps(leg, longest_step, 1), {}, {}};
+  return {name, leg, {}, plan_steps(leg, longest_step, 1), {}, {}, 0};
 }
 
 }  // namespace
@@ -87,15 +93,20 @@ std::vector<Stage> plan_stages(const Scene& scene, double nu_start, const Longes
   }
   const std::vector<Leg> legs = scene.legs(nu_start);
   for (std::size_t i = 0; i < legs.size(); ++i)
-    stages.push_back(stage_of_path(legs, i, scene.measure, nu_start, longest.path));
+    stages.push_back(stage_of_path(scene, legs[i], i, nu_start, longest.path));
   return stages;
+}
+
+Stage stage_from(const Scene& scene, std::size_t i, const Waypoint& from, const LongestSteps& longest) {
+  return stage_of_path(scene, scene.path.leg(i, from), i, from.nu_start, longest.path);
 }
 
 void check_width(const std::vector<Stage>& stages, const State& start, const Scene& scene) {
   const double widest = 2 * *std::max_element(start.radius.begin(), start.radius.end()),
                least = widest + 0.02 * scene.material.r_mean;
   Vec3 length = start.box.diagonal();
-  for (const Stage& stage : stages)
+  for (const Stage& stage : stages) {
+    if (stage.leg.control.by_stress()) return;
     for (std::size_t c = 0; c < 3; ++c) {
       length[c] *= std::exp(-stage.leg.strain[c]);
       if (stage.segment && length[c] < least)
@@ -104,6 +115,7 @@ void check_width(const std::vector<Stage>& stages, const State& start, const Sce
                         to_text(widest) + " mm (it would touch its own image); must stay >= " +
                         to_text(least) + " mm: take more grains or less strain");
     }
+  }
 }
 
 }  // namespace grainlaw::dem

@@ -18,10 +18,12 @@ struct Stage {
   Leg leg;
   std::optional<std::size_t> segment;  ///< index in the path; none during preparation
   StepPlan stepping;
-  std::vector<std::uint64_t> rows;       ///< steps after which to measure, rising
-  std::vector<std::uint64_t> snapshots;  ///< steps after which to take one, rising
+  std::vector<std::uint64_t> rows;       ///< steps after which to measure, rising; none on a controlled leg
+  std::vector<std::uint64_t> snapshots;  ///< steps after which to take one, rising; none on a controlled leg
 
-  /// Share of the leg's strain after so many steps.
+  std::uint64_t row_count = 0;  ///< rows of a controlled leg, evenly spaced in its progress
+
+  /// Share of the leg's strain after so many steps, if it is not controlled.
   double progress(std::uint64_t step) const;
 };
 
@@ -34,8 +36,11 @@ struct LongestSteps {
 /// All stages of a test whose path starts at `nu_start`.
 std::vector<Stage> plan_stages(const Scene& scene, double nu_start, const LongestSteps& longest);
 
-/// Throws Error if the box becomes narrower along the path than its largest grain allows. `start` is the
-/// state the first stage starts from.
+/// The stage of segment i again, when the strain so far is known.
+Stage stage_from(const Scene& scene, std::size_t i, const Waypoint& from, const LongestSteps& longest);
+
+/// Throws Error if the box becomes narrower along the path than its largest grain allows, as far as its
+/// strain is known in advance. `start` is the state the first stage starts from.
 void check_width(const std::vector<Stage>& stages, const State& start, const Scene& scene);
 
 }  // namespace grainlaw::dem

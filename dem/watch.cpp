@@ -13,13 +13,13 @@ Watch::Watch(const RunHooks& hooks, std::size_t grains)
 
 void Watch::enter(const std::string& stage, std::uint64_t steps, std::uint64_t taken) {
   stage_ = stage;
-  stage_end_ = done_ - taken + steps;
+  stage_end_ = done_ - std::min(taken, steps) + steps;
   look();
 }
 
 bool Watch::step() {
-  ++taken_;
-  if (++done_ % interval_ != 0) return true;
+  if (done_ < stage_end_) ++done_;  // a controlled leg may take longer than planned
+  if (++taken_ % interval_ != 0) return true;
   look();
   return !stopped();
 }

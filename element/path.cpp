@@ -11,13 +11,20 @@ namespace grainlaw {
 namespace {
 
 constexpr std::size_t most_segments = 1'000'000;
+constexpr double fastest = 1e6;                // 1/us
 constexpr double default_rate = 2.839e-5;      // 28.39 /s, the thesis's D2 (section 4.3)
 constexpr double default_rate_iso = 5.0e-6;    // 5 /s, near the thesis's slow isotropic cycle (Fig. 2.2)
 constexpr double longest_relaxation = 2000.0;  // us, 24 background relaxation times
 constexpr double largest_stress =
     1000;  // over k*, and of fabric: far beyond any law, so that nothing overflows
-const Range any_strain = between(-100, 100), any_rate = above_up_to(0, 1e6),
+const Range any_strain = between(-100, 100), any_rate = above_up_to(0, fastest),
             any_duration = above_up_to(0, 1e15);
+constexpr double servo_over_rate = 10;  // how much faster than the segment a servo may strain an axis
+constexpr std::array all_modes{
+    Mode::iso,    Mode::uni,        Mode::d2,      Mode::d3,       Mode::components,
+    Mode::relax,  Mode::constant_p, Mode::biaxial, Mode::triaxial, Mode::isotropic_stress,
+    Mode::control};
+constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 constexpr Strain3 axis_d2{-1, 1, 0};
 constexpr Strain3 axis_uni{-0.5, -0.5, 1};
 
@@ -36,8 +43,8 @@ bool has_deviator(const Strain3& e) {
 
 /// The axis of a strain (see SignConvention); `before` is the axis in force, if any.
 Strain3 axis_of(Mode mode, const Strain3& strain, const std::optional<Strain3>& before) {
-  if (mode == Mode::d2) return axis_d2;
-  if (mode == Mode::uni || mode == Mode::d3) return axis_uni;
+  if (mode == Mode::d2 || mode == Mode::biaxial) return axis_d2;
+  if (mode == Mode::uni || mode == Mode::d3 || mode == Mode::triaxial) return axis_uni;
   if (coaxial(strain, axis_d2)) return axis_d2;
   if (coaxial(strain, axis_uni)) return axis_uni;
   if (before && coaxial(strain, *before)) return *before;
@@ -54,6 +61,9 @@ const std::vector<std::string>& controls_of(Mode mode) {
       return all;
     case Mode::d2:
     case Mode::d3:
+    case Mode::constant_p:
+    case Mode::biaxial:
+    case Mode::triaxial:
       return shape;
     default:
       return none;
@@ -101,34 +111,119 @@ void read_amount(Reader& reader, Segment& segment) {
   if (segment.amount && *segment.amount == 0) reader.fail("amount", "must not be 0");
 }
 
+/// x, y, z of mode control, and P.
+void read_axes(Reader& reader, Segment& segment) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    Reader axis = reader.object(axis_names[c]);
+    if (axis.has("strain") == axis.has("stress"))
+      axis.fail("", axis.has("strain") ? "redundant: strain and stress both control this axis; give one"
+                                       : "must give strain or stress");
+    if (axis.has("strain"))
+      segment.strain[c] = axis.number("strain", any_strain);
+    else
+      segment.control.axis[c] = read_target(axis, "stress");
+    axis.finish();
+  }
+  const bool any = segment.control.by_stress();
+  reader.optional({"P"});
+  if (!reader.has("P")) return;
+  if (any)
+    reader.fail("P", "needs a strain on each of x, y, z: the isotropic strain that keeps P adds to it");
+  segment.control.mean = read_target(reader, "P");
+}
+
+/// What the mode controls, and how far it goes.
+void read_what(Reader& reader, Segment& segment) {
+  Control& control = segment.control;
+  switch (segment.mode) {
+    case Mode::components:
+      return read_strain(reader, segment);
+    case Mode::control:
+      return read_axes(reader, segment);
+    case Mode::isotropic_stress:
+      control.axis.fill(StressTarget{reader.number("P", target_range())});
+      return;
+    case Mode::constant_p:
+      segment.shear = reader.word("shear", {"d2", "d3"}, "d2") == "d2" ? Mode::d2 : Mode::d3;
+      control.mean = read_target_or_start(reader, "P");
+      break;
+    case Mode::biaxial:
+      control.axis[0] = read_target_or_start(reader, "stress");
+      break;
+    case Mode::triaxial:
+      control.axis[0] = control.axis[1] = read_target_or_start(reader, "stress");
+      break;
+    default:
+      break;
+  }
+  read_amount(reader, segment);
+}
+
+void read_profile(Reader& reader, Segment& segment) {
+  const bool rests =
+      segment.mode == Mode::iso || segment.mode == Mode::uni || segment.mode == Mode::components;
+  const std::string profile =
+      reader.word("profile", {"constant", "cosine", "steered"}, rests ? "cosine" : "constant");
+  segment.profile = profile == "cosine"    ? Profile::cosine
+                    : profile == "steered" ? Profile::steered
+                                           : Profile::constant;
+  if (segment.profile == Profile::steered) {
+    segment.wanted_ratio = reader.number("Ek_over_Ep", inside(0, 1), segment.wanted_ratio);
+    if (segment.duration) reader.fail("duration", "means nothing with a steered rate; give rate");
+  }
+  const bool axial = segment.mode == Mode::biaxial || segment.mode == Mode::triaxial;
+  if (!axial || !segment.to_eps_dev) return;
+  const std::string why =
+      " with controls.eps_dev: how far the axis goes is known only then; give amount, the axial strain";
+  if (segment.profile == Profile::cosine) reader.fail("profile", "must not be cosine" + why);
+  if (segment.duration) reader.fail("duration", "must not be given" + why);
+}
+
+void read_pace(Reader& reader, Segment& segment) {
+  segment.rate = reader.maybe_number("rate", any_rate);
+  if (segment.mode != Mode::isotropic_stress) {
+    segment.duration = reader.maybe_number("duration", any_duration);
+    if (segment.rate && segment.duration)
+      reader.fail("duration", "redundant: rate and duration both say how fast; give one");
+  }
+  if (!segment.rate && !segment.duration)
+    segment.rate =
+        segment.mode == Mode::iso || segment.mode == Mode::isotropic_stress ? default_rate_iso : default_rate;
+  if (segment.mode != Mode::isotropic_stress) read_profile(reader, segment);
+  if (!segment.control.by_stress()) return;
+  const double rate = segment.rate.value_or(default_rate) * (segment.only_waits() ? 1 : servo_over_rate);
+  segment.control.servo = read_servo(reader.object_or_empty("servo"), std::min(rate, fastest));
+}
+
+void check_drive(const Reader& reader, const Segment& segment) {
+  if (segment.mode != Mode::control || !segment.only_waits()) return;
+  if (!segment.control.by_stress())
+    reader.fail("", "has nothing to do: x, y and z have neither a strain nor a stress");
+  for (const char* key : {"duration", "profile"})
+    if (reader.has(key)) reader.fail(key, "means nothing here: no axis is strained");
+}
+
 Segment read_segment(Reader& reader, std::int64_t& repeat) {
   Segment segment;
   segment.key = reader.path_of("");
-  const std::string mode = reader.word("mode", {"iso", "uni", "d2", "d3", "components", "relax"});
-  for (const Mode m : {Mode::iso, Mode::uni, Mode::d2, Mode::d3, Mode::components, Mode::relax})
-    if (mode == name_of(m)) segment.mode = m;
+  std::vector<std::string> modes;
+  for (const Mode mode : all_modes) modes.push_back(name_of(mode));
+  const std::string mode = reader.word("mode", modes);
+  segment.mode =
+      all_modes[static_cast<std::size_t>(std::find(modes.begin(), modes.end(), mode) - modes.begin())];
   repeat = 1;
   if (segment.mode == Mode::relax) {
     read_relax(reader, segment);
     reader.finish();
     return segment;
   }
-  if (segment.mode == Mode::components)
-    read_strain(reader, segment);
-  else
-    read_amount(reader, segment);
-  repeat = reader.integer("repeat", 1, static_cast<std::int64_t>(most_segments), 1);
+  read_what(reader, segment);
+  if (segment.mode != Mode::isotropic_stress)
+    repeat = reader.integer("repeat", 1, static_cast<std::int64_t>(most_segments), 1);
   if (repeat > 1 && reader.has("controls"))
     reader.fail("repeat", "needs amount: a target is already reached the second time, got controls");
-  segment.rate = reader.maybe_number("rate", any_rate);
-  segment.duration = reader.maybe_number("duration", any_duration);
-  if (segment.rate && segment.duration)
-    reader.fail("duration", "redundant: rate and duration both say how fast; give one");
-  if (!segment.rate && !segment.duration)
-    segment.rate = segment.mode == Mode::iso ? default_rate_iso : default_rate;
-  const bool shear = segment.mode == Mode::d2 || segment.mode == Mode::d3;
-  const std::string profile = reader.word("profile", {"constant", "cosine"}, shear ? "constant" : "cosine");
-  segment.profile = profile == "cosine" ? Profile::cosine : Profile::constant;
+  read_pace(reader, segment);
+  check_drive(reader, segment);
   reader.finish();
   return segment;
 }
@@ -157,26 +252,48 @@ std::vector<Segment> read_segments(Reader& owner) {
   return all;
 }
 
+Strain3 d2_strain(double eps_dev) {
+  const double e = eps_dev / std::numbers::sqrt3;
+  return {-e, e, 0};
+}
+
+Strain3 d3_strain(double eps_dev) {
+  const double e = eps_dev / 1.5;
+  return {-0.5 * e, -0.5 * e, e};
+}
+
 /// Logarithmic strain of a segment, given volume fraction and accumulated strains where it begins.
-Strain3 strain_of(const Segment& segment, double nu, double eps_vol, double eps_dev) {
-  if (segment.mode == Mode::components) return segment.strain;
-  if (segment.mode == Mode::relax) return {};
+Strain3 strain_of(const Segment& segment, const Waypoint& at) {
   double amount = 0;
   if (segment.amount) amount = *segment.amount;
-  if (segment.to_nu) amount = std::log(*segment.to_nu / nu);
-  if (segment.to_eps_vol) amount = *segment.to_eps_vol - eps_vol;
-  if (segment.to_eps_dev) amount = *segment.to_eps_dev - eps_dev;
-  const double d2 = amount / std::numbers::sqrt3, d3 = amount / 1.5;
+  if (segment.to_nu) amount = std::log(*segment.to_nu / at.nu);
+  if (segment.to_eps_vol) amount = *segment.to_eps_vol - at.eps_vol;
+  if (segment.to_eps_dev) amount = *segment.to_eps_dev - at.eps_dev;
+  // A side that may give way makes eps_dev larger than the axial strain; twice as much is certainly enough.
+  const double axial = segment.to_eps_dev ? 2 * amount : amount;
   switch (segment.mode) {
+    case Mode::components:
+    case Mode::control:
+      return segment.strain;
     case Mode::iso:
       return {amount / 3, amount / 3, amount / 3};
     case Mode::uni:
       return {0, 0, amount};
     case Mode::d2:
-      return {-d2, d2, 0};
-    default:
-      return {-0.5 * d3, -0.5 * d3, d3};
+      return d2_strain(amount);
+    case Mode::d3:
+      return d3_strain(amount);
+    case Mode::constant_p:
+      return segment.shear == Mode::d2 ? d2_strain(amount) : d3_strain(amount);
+    case Mode::biaxial:
+      return {0, axial, 0};
+    case Mode::triaxial:
+      return {0, 0, axial};
+    case Mode::relax:
+    case Mode::isotropic_stress:
+      break;
   }
+  return {};
 }
 
 /// The mode's own strain (the number `rate` multiplies): the largest component.
@@ -196,6 +313,19 @@ Json start_json(const Start& start) {
   return json;
 }
 
+void put_targets(Json& json, const Segment& segment) {
+  const auto& axis = segment.control.axis;
+  const auto target = [&](std::size_t c) { return grainlaw::to_json(std::get<StressTarget>(axis[c])); };
+  if (segment.mode == Mode::constant_p) json["shear"] = name_of(segment.shear);
+  if (segment.mode == Mode::control)
+    for (std::size_t c = 0; c < 3; ++c)
+      json[axis_names[c]] =
+          segment.control.by_stress(c) ? Json{{"stress", target(c)}} : Json{{"strain", segment.strain[c]}};
+  if (segment.mode == Mode::biaxial || segment.mode == Mode::triaxial) json["stress"] = target(0);
+  if (segment.mode == Mode::isotropic_stress) json["P"] = target(0);
+  if (segment.control.mean) json["P"] = grainlaw::to_json(*segment.control.mean);
+}
+
 Json segment_json(const Segment& segment) {
   Json json{{"mode", name_of(segment.mode)}};
   if (segment.mode == Mode::relax) {
@@ -208,9 +338,12 @@ Json segment_json(const Segment& segment) {
   if (segment.to_eps_dev) json["controls"] = {{"eps_dev", *segment.to_eps_dev}};
   if (segment.amount) json["amount"] = *segment.amount;
   if (segment.mode == Mode::components) json["strain"] = segment.strain;
+  put_targets(json, segment);
   if (segment.rate) json["rate"] = *segment.rate;
   if (segment.duration) json["duration"] = *segment.duration;
-  json["profile"] = name_of(segment.profile);
+  if (!segment.only_waits()) json["profile"] = name_of(segment.profile);
+  if (segment.profile == Profile::steered) json["Ek_over_Ep"] = segment.wanted_ratio;
+  if (segment.control.by_stress()) json["servo"] = grainlaw::to_json(segment.control.servo);
   return json;
 }
 
@@ -230,11 +363,36 @@ std::string name_of(Mode mode) {
       return "components";
     case Mode::relax:
       return "relax";
+    case Mode::constant_p:
+      return "constant_p";
+    case Mode::biaxial:
+      return "biaxial";
+    case Mode::triaxial:
+      return "triaxial";
+    case Mode::isotropic_stress:
+      return "isotropic_stress";
+    case Mode::control:
+      return "control";
   }
   return "";
 }
 
-std::string name_of(Profile profile) { return profile == Profile::cosine ? "cosine" : "constant"; }
+bool Segment::only_waits() const {
+  return mode == Mode::relax || mode == Mode::isotropic_stress ||
+         (mode == Mode::control && strain == Strain3{});
+}
+
+std::string name_of(Profile profile) {
+  switch (profile) {
+    case Profile::constant:
+      return "constant";
+    case Profile::cosine:
+      return "cosine";
+    case Profile::steered:
+      return "steered";
+  }
+  return "";
+}
 
 bool coaxial(const Strain3& a, const Strain3& b) {
   const Strain3 u = deviator(a), v = deviator(b);
@@ -244,7 +402,7 @@ bool coaxial(const Strain3& a, const Strain3& b) {
 
 double Leg::progress(double t) const {
   const double s = duration > 0 ? std::clamp(t / duration, 0.0, 1.0) : 1.0;
-  if (profile == Profile::constant) return s;
+  if (profile != Profile::cosine) return s;
   // sin^2 instead of (1 - cos)/2: no cancellation at the start.
   const double half = std::sin(0.5 * std::numbers::pi * s);
   return half * half;
@@ -252,7 +410,7 @@ double Leg::progress(double t) const {
 
 double Leg::time_at(double f) const {
   f = std::clamp(f, 0.0, 1.0);
-  if (profile == Profile::constant) return f * duration;
+  if (profile != Profile::cosine) return f * duration;
   return duration * 2 / std::numbers::pi * std::asin(std::sqrt(f));
 }
 
@@ -269,7 +427,7 @@ Path Path::read(Reader reader) {
   start.finish();
   path.segments = read_segments(reader);
   reader.finish();
-  if (path.start.nu) path.legs(*path.start.nu);  // targets checked before any work starts
+  if (path.start.nu) path.nominal_legs(*path.start.nu);  // targets checked before any work starts
   return path;
 }
 
@@ -279,47 +437,86 @@ Json Path::to_json() const {
   return {{"start", start_json(start)}, {"segments", list}};
 }
 
+void Waypoint::move(const Strain3& strain, const std::optional<Strain3>& leg_axis) {
+  if (leg_axis) axis = leg_axis;
+  if (has_deviator(strain)) eps_dev += signed_deviator(strain, axis.value_or(axis_uni));
+  eps_vol += strain[0] + strain[1] + strain[2];
+  nu = nu_start * std::exp(eps_vol);
+}
+
+Leg Path::leg(std::size_t i, const Waypoint& from) const {
+  const Segment& segment = segments.at(i);
+  Leg leg{};
+  leg.mode = segment.mode;
+  leg.strain = strain_of(segment, from);
+  leg.profile = segment.profile;
+  leg.tolerance = segment.tolerance;
+  leg.control = segment.control;
+  leg.wanted_ratio = segment.wanted_ratio;
+  if (segment.mode == Mode::biaxial || segment.mode == Mode::triaxial) leg.to_eps_dev = segment.to_eps_dev;
+  const double size = largest(leg.strain);
+  const bool waits = !leg.drives() && leg.control.by_stress();
+  if (segment.mode != Mode::relax && !waits && !(size > 1e-14))
+    throw Error(file, segment.key, "has nothing to do: its target is the state already reached");
+  leg.duration = segment.duration ? *segment.duration : waits ? leg.control.servo.wait : size / *segment.rate;
+  if (has_deviator(leg.strain)) leg.axis = axis_of(leg.mode, leg.strain, from.axis);
+  Waypoint to = from;
+  to.move(leg.strain, leg.axis);
+  if (!(to.nu > 0 && to.nu < 1) && !leg.control.by_stress())
+    throw Error(file, segment.key,
+                "takes the volume fraction to " + to_text(to.nu) + "; it must stay > 0 and < 1");
+  leg.eps_vol[0] = from.eps_vol;
+  leg.eps_vol[1] = to.eps_vol;
+  leg.eps_dev[0] = from.eps_dev;
+  leg.eps_dev[1] = to.eps_dev;
+  return leg;
+}
+
 std::vector<Leg> Path::legs(double nu) const {
+  for (const Segment& segment : segments)
+    if (segment.control.by_stress())
+      throw Error(file, segment.key,
+                  "is under stress control (mode " + name_of(segment.mode) +
+                      "): its strain is known only when the grains have run");
+  return nominal_legs(nu);
+}
+
+std::vector<Leg> Path::nominal_legs(double nu) const {
   std::vector<Leg> legs;
   legs.reserve(segments.size());
-  const double nu_start = nu;
-  double eps_vol = 0, eps_dev = 0;
-  std::optional<Strain3> axis;
-  for (const Segment& segment : segments) {
-    Leg leg{segment.mode,
-            strain_of(segment, nu, eps_vol, eps_dev),
-            {eps_vol, 0},
-            {eps_dev, 0},
-            0,
-            segment.profile,
-            segment.tolerance};
-    const double size = largest(leg.strain);
-    if (segment.mode != Mode::relax && !(size > 1e-14))
-      throw Error(file, segment.key, "has nothing to do: its target is the state already reached");
-    leg.duration = segment.duration ? *segment.duration : size / *segment.rate;
-    if (has_deviator(leg.strain)) {
-      axis = axis_of(leg.mode, leg.strain, axis);
-      eps_dev += std::copysign(magnitude(leg.strain), dot(leg.strain, *axis));
+  Waypoint at(nu);
+  bool certain = true;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    certain = certain && !segments[i].control.by_stress();
+    Leg leg{};
+    try {
+      leg = this->leg(i, at);
+    } catch (const Error&) {
+      if (certain) throw;
+      leg.mode = segments[i].mode;  // whether its target is reached is known only after the servo
     }
-    eps_vol += leg.strain[0] + leg.strain[1] + leg.strain[2];
-    nu = nu_start * std::exp(eps_vol);
-    if (!(nu > 0 && nu < 1))
-      throw Error(file, segment.key,
-                  "takes the volume fraction to " + to_text(nu) + "; it must stay > 0 and < 1");
-    leg.eps_vol[1] = eps_vol;
-    leg.eps_dev[1] = eps_dev;
-    legs.push_back(leg);
+    at.move(leg.strain, leg.axis);
+    legs.push_back(std::move(leg));
   }
   return legs;
+}
+
+bool Path::by_stress() const {
+  return std::any_of(segments.begin(), segments.end(),
+                     [](const Segment& segment) { return segment.control.by_stress(); });
+}
+
+double signed_deviator(const Strain3& strain, const Strain3& axis) {
+  return std::copysign(magnitude(strain), dot(strain, axis));
 }
 
 SignConvention::SignConvention(const std::vector<Leg>& legs) : axes_(legs.size(), axis_uni) {
   std::optional<Strain3> axis;
   std::size_t leading = 0;  // legs before the first axis is known
   for (std::size_t i = 0; i < legs.size(); ++i) {
-    if (has_deviator(legs[i].strain)) {
+    if (legs[i].axis || has_deviator(legs[i].strain)) {
       const bool first = !axis;
-      axis = axis_of(legs[i].mode, legs[i].strain, axis);
+      axis = legs[i].axis ? legs[i].axis : axis_of(legs[i].mode, legs[i].strain, axis);
       if (first) std::fill_n(axes_.begin(), leading, *axis);
     }
     if (axis)

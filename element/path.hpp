@@ -7,13 +7,26 @@
 #include <string>
 #include <vector>
 
+#include "grainlaw/element/control.hpp"
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/tensor.hpp"
 
 namespace grainlaw {
 
-enum class Mode { iso, uni, d2, d3, components, relax };
-enum class Profile { constant, cosine };
+enum class Mode {
+  iso,
+  uni,
+  d2,
+  d3,
+  components,
+  relax,
+  constant_p,        ///< D2 or D3 with an isotropic strain that keeps P
+  biaxial,           ///< y driven, z at rest, x under constant stress
+  triaxial,          ///< z driven, x and y under constant stress
+  isotropic_stress,  ///< all three axes to the same stress
+  control            ///< any mix
+};
+enum class Profile { constant, cosine, steered };
 
 std::string name_of(Mode mode);
 std::string name_of(Profile profile);
@@ -30,30 +43,59 @@ struct Start {
 struct Segment {
   Mode mode = Mode::iso;
   std::optional<double> to_nu, to_eps_vol, to_eps_dev;  ///< controls: at most one is set
-  std::optional<double> amount;                         ///< eps_vol for iso and uni, eps_dev for d2 and d3
-  Strain3 strain{};                                     ///< only for components
-  std::optional<double> rate;                           ///< mean strain rate of the mode, 1/us
-  std::optional<double> duration;                       ///< us; for relax the longest time
+  std::optional<double> amount;  ///< natural amount of the mode: eps_vol for iso and uni, eps_dev for d2, d3
+                                 ///< and constant_p, axial strain for biaxial and triaxial
+  Strain3 strain{};              ///< only for components and control
+  Mode shear = Mode::d2;         ///< only for constant_p: d2 or d3
+  Control control;
+  std::optional<double> rate;      ///< mean strain rate of the mode, 1/us
+  std::optional<double> duration;  ///< us; for relax the longest time
   Profile profile = Profile::constant;
-  double tolerance = 1e-6;  ///< only for relax
-  std::string key;          ///< where it stands in its file ("path.segments[2]")
+  double wanted_ratio = 1e-4;  ///< E_k/E_p that a steered rate keeps
+  double tolerance = 1e-6;     ///< only for relax
+  /// Whether no axis is driven at a strain rate: the box waits for rest or for stress targets.
+  bool only_waits() const;
+  std::string key;  ///< where it stands in its file ("path.segments[2]")
 };
 
-/// A segment with its strain known: what DEM and law both walk along.
+/// A segment with its strain known: what DEM and law both walk along. Under stress control only part of the
+/// strain is: what the law cannot walk along.
 struct Leg {
   Mode mode;
-  Strain3 strain;     ///< logarithmic strain of this leg, compression positive; zero for relax
-  double eps_vol[2];  ///< from the path's start, at begin and end
-  double eps_dev[2];  ///< sum of the signed increments from the path's start, at begin and end
-  double duration;    ///< us
+  Strain3 strain;     ///< logarithmic strain of this leg, compression positive; zero for relax. Of an axis
+                      ///< under a stress target, or beside a mean one: without what the servo adds
+  double eps_vol[2];  ///< from the path's start, at begin and end, of `strain`
+  double eps_dev[2];  ///< sum of the signed increments from the path's start, at begin and end, of `strain`
+  double duration;    ///< us; for relax and a leg that only waits for stress targets the longest
   Profile profile;
   double tolerance;
+  Control control;
+  std::optional<double> to_eps_dev;  ///< ends where the box has this eps_dev, else when `strain` is applied
+  double wanted_ratio = 1e-4;        ///< E_k/E_p that a steered rate keeps
+  std::optional<Strain3> axis;       ///< of its deviatoric scalars; none if it does not shear
+
+  /// Whether the grains decide how it goes on: under stress control, or at a steered rate.
+  bool controlled() const { return control.by_stress() || profile == Profile::steered; }
+  /// Whether any axis is driven at a strain rate; else it relaxes, or waits for stress targets.
+  bool drives() const { return strain != Strain3{}; }
   /// Fraction of the leg's logarithmic strain applied at time t in [0, duration], the same for all
   /// components, so that D2 and D3 keep the volume at all times. Cosine: (1 - cos(pi t/duration))/2, which is
   /// Eq. 2.2 to first order in the strain.
   double progress(double t) const;
   /// Its inverse: the time at which fraction f in [0, 1] is applied, us.
   double time_at(double f) const;
+};
+
+/// Where a path stands between two segments.
+struct Waypoint {
+  double nu_start;
+  double nu;
+  double eps_vol = 0, eps_dev = 0;  ///< from the path's start
+  std::optional<Strain3> axis;      ///< of the last leg that sheared
+
+  explicit Waypoint(double start) : nu_start(start), nu(start) {}
+  /// Goes on by the logarithmic strain of a leg, or of part of it.
+  void move(const Strain3& strain, const std::optional<Strain3>& leg_axis);
 };
 
 struct Path {
@@ -65,10 +107,21 @@ struct Path {
   /// The path with defaults filled in, repeats written out.
   Json to_json() const;
   /// Turns targets into strains, for a path that starts at volume fraction nu. Throws Error when a target is
-  /// the state already reached, or the volume fraction leaves (0, 1).
+  /// the state already reached, or the volume fraction leaves (0, 1); also for a segment under stress
+  /// control, whose strain only the grains know.
   std::vector<Leg> legs(double nu) const;
+  /// Segment i as a leg from there. Throws Error as legs() does, but takes stress control.
+  Leg leg(std::size_t i, const Waypoint& from) const;
+  /// All legs as if servos added no strain, for estimates and signs: a leg that would then have nothing to do
+  /// is empty. Throws Error as legs() does, up to the first segment under stress control.
+  std::vector<Leg> nominal_legs(double nu) const;
+  /// Whether any segment is under stress control.
+  bool by_stress() const;
   std::string file;  ///< for error messages
 };
+
+/// Logarithmic strain as one number: sqrt(3 J2) with the sign of its projection on the axis.
+double signed_deviator(const Strain3& strain, const Strain3& axis);
 
 /// Sign convention of deviatoric scalars (Fsgn): the sign of a tensor's projection on the leg's axis, D2 (-1,
 /// 1, 0), that is sgn(Qyy - Qxx); UNI and D3 (-1/2, -1/2, 1), that is sgn(Qzz - (Qxx+Qyy)/2). `components`

@@ -216,4 +216,35 @@ std::vector<Sample> samples_of(const Record& record, const Path& path, double nu
   return samples;
 }
 
+MeasuredPath measured_path(const Record& record, const Path& path) {
+  const auto &segment = record["segment"], &eps_vol = record["eps_vol"], &eps_dev = record["eps_dev"];
+  const double nu = record["nu"].front() * std::exp(-eps_vol.front());
+  const std::vector<Leg> asked = path.nominal_legs(nu);
+  const SignConvention sign(asked);
+  MeasuredPath measured;
+  measured.path.file = path.file;
+  measured.path.start = path.start;
+  measured.path.start.nu = nu;
+  measured.segments = segment;
+  measured.samples.push_back({0, 0});
+  for (std::size_t row = 1; row < record.rows(); ++row) {
+    if (!(segment[row] >= 0 && segment[row] < static_cast<double>(asked.size())))
+      throw Error(path.file, "",
+                  "row " + std::to_string(row + 1) + " of the record has segment " + to_text(segment[row]) +
+                      "; the path has " + std::to_string(asked.size()));
+    const auto i = static_cast<std::size_t>(segment[row]);
+    const double volume = eps_vol[row] - eps_vol[row - 1], shear = eps_dev[row] - eps_dev[row - 1];
+    Segment step;
+    step.key = "row " + std::to_string(row + 1);
+    step.mode = volume == 0 && shear == 0 ? Mode::relax : Mode::components;
+    step.duration = 1;
+    const Strain3& axis = sign.axis(i);
+    const double size = signed_deviator(axis, axis);
+    for (std::size_t c = 0; c < 3; ++c) step.strain[c] = volume / 3 + shear * axis[c] / size;
+    measured.path.segments.push_back(step);
+    measured.samples.push_back({row - 1, 1});
+  }
+  return measured;
+}
+
 }  // namespace grainlaw::model

@@ -50,4 +50,13 @@ Prediction predict(const ParameterSet& parameters, const Path& path, const std::
 /// Throws Error for a row that is not on the path.
 std::vector<Sample> samples_of(const Record& record, const Path& path, double nu_start);
 
+/// The strain that the grains of a record took, from row to row, as a path of its own: what the law can
+/// follow of a path under stress control. `path` is the one that was asked of the grains.
+struct MeasuredPath {
+  Path path;                     ///< from the volume fraction of the first row
+  std::vector<Sample> samples;   ///< one per row
+  std::vector<double> segments;  ///< of `path` as asked, one per row
+};
+MeasuredPath measured_path(const Record& record, const Path& path);
+
 }  // namespace grainlaw::model

@@ -121,8 +121,8 @@ void print_rows(dem::State state, const Material& material, const char* file) {
     next += plan.steps / rows;
     dem::Dynamics dynamics(material, state);
     dynamics.start(plan.dt, {rate, -rate, 0});
-    writer.append(dynamics.measure(), 0, static_cast<double>(state.step) / static_cast<double>(plan.steps),
-                  static_cast<double>(state.step) * plan.dt);
+    const double progress = static_cast<double>(state.step) / static_cast<double>(plan.steps);
+    writer.append(dynamics.measure(), 0, progress * eps_dev, static_cast<double>(state.step) * plan.dt);
   }
   std::fputs(writer.record().to_csv().c_str(), stdout);
 }

@@ -73,10 +73,10 @@ TEST(Schema, DefaultsOfAPath) {
              uni = path_of(R"({"segments": [{"mode": "uni", "amount": 0.1}]})"),
              d2 = path_of(R"({"segments": [{"mode": "d2", "amount": 0.1}]})"),
              d3 = path_of(R"({"segments": [{"mode": "d3", "amount": 0.1}]})");
-  EXPECT_THAT(rate, testing::HasSubstr("Default: 5.0e-6 for iso, else 2.839e-5."));
+  EXPECT_THAT(rate, testing::HasSubstr("Default: 5.0e-6 for iso and isotropic_stress, else 2.839e-5."));
   EXPECT_EQ(iso.rate, 5.0e-6);
   for (const auto& other : {uni, d2, d3}) EXPECT_EQ(other.rate, 2.839e-5);
-  EXPECT_THAT(profile, testing::HasSubstr("Default: constant for d2 and d3, else cosine."));
+  EXPECT_THAT(profile, testing::HasSubstr("Default: cosine for iso, uni and components, else constant."));
   for (const auto& shear : {d2, d3}) EXPECT_EQ(shear.profile, Profile::constant);
   for (const auto& other : {iso, uni}) EXPECT_EQ(other.profile, Profile::cosine);
 }

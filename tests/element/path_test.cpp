@@ -113,6 +113,63 @@ TEST(Path, RefusesWhatCannotBe) {
   EXPECT_EQ(refusal(R"({"segments": []})"), "p.json: segments: must have at least one entry, got []");
 }
 
+TEST(Path, PresetsOfStressControl) {
+  const auto path = path_of(R"({"segments": [
+      {"mode": "constant_p", "P": 0.02, "amount": 0.3, "shear": "d3"}, {"mode": "biaxial", "amount": 0.1},
+      {"mode": "triaxial", "stress": 0.01, "amount": -0.1, "rate": 1e-5}, {"mode": "isotropic_stress", "P": 0.03},
+      {"mode": "control", "x": {"stress": "start"}, "y": {"strain": 0.1}, "z": {"strain": 0}}]})");
+  const auto legs = path.nominal_legs(0.7);
+  EXPECT_EQ(legs[0].control.mean->stress, 0.02);
+  EXPECT_NEAR(legs[0].strain[2], 0.2, 1e-15);
+  EXPECT_NEAR(legs[0].eps_dev[1], 0.3, 1e-15);
+  EXPECT_TRUE(legs[1].control.by_stress(0));
+  EXPECT_FALSE(std::get<StressTarget>(legs[1].control.axis[0]).stress);
+  EXPECT_FALSE(legs[1].control.by_stress(1) || legs[1].control.by_stress(2));
+  EXPECT_EQ(legs[1].strain, (Strain3{0, 0.1, 0}));
+  for (const std::size_t side : {0u, 1u})
+    EXPECT_EQ(std::get<StressTarget>(legs[2].control.axis[side]).stress, 0.01);
+  EXPECT_EQ(legs[2].strain, (Strain3{0, 0, -0.1}));
+  EXPECT_EQ(legs[2].control.servo.rate, 1e-4);
+  EXPECT_EQ(legs[2].control.servo.wait, 5000);  // a strain of 0.5
+  EXPECT_FALSE(legs[3].drives());
+  EXPECT_EQ(legs[3].control.servo.rate, 5e-6);
+  EXPECT_EQ(legs[4].strain, legs[1].strain);
+  EXPECT_EQ(Path::read({path.to_json(), "p.json"}).to_json(), path.to_json());
+}
+
+TEST(Path, StrainUnderStressControlIsNotKnownInAdvance) {
+  const auto path = path_of(R"({"segments": [{"mode": "d2", "amount": 0.1},
+      {"mode": "triaxial", "controls": {"eps_dev": 0.3}}, {"mode": "iso", "controls": {"nu": 0.7}}]})");
+  try {
+    path.legs(0.7);
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "p.json: segments[1]: is under stress control (mode triaxial): its strain is known "
+                 "only when the grains have run");
+  }
+  EXPECT_EQ(path.nominal_legs(0.7).size(), 3u);
+  Waypoint at(0.7);
+  at.move({0, 0, 0.1}, Strain3{-0.5, -0.5, 1});
+  EXPECT_NEAR(path.leg(2, at).eps_vol[1], 0, 1e-15);
+  EXPECT_NEAR(path.leg(1, at).to_eps_dev.value(), 0.3, 0);
+}
+
+TEST(Path, RefusesStressControlThatMeansNothing) {
+  EXPECT_EQ(refused_segment(R"({"mode": "triaxial", "amount": 0.1, "stress": -0.01})"),
+            "p.json: segments[0].stress: must be > 0 and <= 1000, got -0.01");
+  EXPECT_EQ(refused_segment(R"({"mode": "biaxial", "amount": 0.1, "stress": "hold"})"),
+            "p.json: segments[0].stress: must be one of start, got \"hold\"");
+  EXPECT_EQ(
+      refused_segment(
+          R"({"mode": "control", "x": {"strain": 0.1, "stress": 0.1}, "y": {"strain": 0}, "z": {"strain": 0}})"),
+      "p.json: segments[0].x: redundant: strain and stress both control this axis; give one");
+  EXPECT_THAT(refused_segment(R"({"mode": "d2", "amount": 0.1, "servo": {}})"),
+              testing::HasSubstr("segments[0].servo: unknown key"));
+  EXPECT_EQ(refused_segment(R"({"mode": "d2", "amount": 0.1, "profile": "steered", "duration": 10})"),
+            "p.json: segments[0].duration: means nothing with a steered rate; give rate");
+}
+
 TEST(SignConvention, FollowsTheAxesOfTheMode) {
   const auto legs = path_of(R"({"segments": [{"mode": "iso", "amount": 0.1}, {"mode": "d2", "amount": -0.1},
       {"mode": "relax"}, {"mode": "uni", "amount": 0.1}]})")

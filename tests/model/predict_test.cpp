@@ -202,6 +202,26 @@ std::string d2_to(double eps_dev) {
   return R"({"mode": "d2", "controls": {"eps_dev": )" + to_text(eps_dev) + "}}";
 }
 
+TEST(Predict, FollowsTheMeasuredStrainOfStressControl) {
+  const auto path = [](const std::string& segments) {
+    return Path::read(Reader(parse_json(R"({"segments": [)" + segments + "]}", "p.json"), "p.json"));
+  };
+  const std::string shear =
+      R"({"mode": "relax"}, {"mode": "d2", "amount": 0.1}, {"mode": "iso", "amount": 0.02}])";
+  const Prediction direct = walk(R"({"start": {"nu": 0.7}, "segments": [)" + shear + "}", Form::coupled);
+  // The same strain, as if grains under constant pressure had taken it.
+  const Path asked = path(
+      R"({"mode": "relax"}, {"mode": "constant_p", "amount": 0.1}, {"mode": "isotropic_stress", "P": 0.1})");
+  const MeasuredPath measured = measured_path(direct.record, asked);
+  ASSERT_EQ(measured.samples.size(), direct.record.rows());
+  const Prediction p = predict(thesis(), measured.path, measured.samples);
+  for (const char* column : {"nu", "eps_dev", "P", "sigma_dev", "F_dev"})
+    for (std::size_t i = 0; i < p.record.rows(); ++i)
+      EXPECT_NEAR(p.record[column][i], direct.record[column][i], 1e-6) << column << " in row " << i;
+  EXPECT_EQ(measured.segments, direct.record["segment"]);
+  EXPECT_THROW(predict(thesis(), asked), Error);
+}
+
 TEST(Predict, SaysHowMuchPressureIsPumped) {
   const std::string cycle = d2_to(0.4) + "," + d2_to(-0.4) + "," + d2_to(0.4);
   const Prediction p =

@@ -1,0 +1,232 @@
+// Element tests under stress control and at a steered rate: rows are on target, presets are one thing, and
+// what cannot be reached is said.
+#include "grainlaw/dem/controlled_drive.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "grainlaw/dem/element_test.hpp"
+#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/file.hpp"
+#include "grainlaw/element/record.hpp"
+#include "packings.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ControlledDrive : public testing::Test {
+ protected:
+  void SetUp() override {
+    dir = fs::temp_directory_path() / ("grainlaw-controlled-drive-" + std::to_string(::getpid()));
+    fs::remove_all(dir);
+  }
+  void TearDown() override { fs::remove_all(dir); }
+
+  /// The record of a path on a small jammed packing.
+  Record run(const std::string& segments, const std::string& measure = R"("rows": 10)",
+             const std::string& name = "a", int count = 150) {
+    const std::string json = R"({"preparation": {"count": )" + std::to_string(count) +
+                             R"(, "seed": 3, "nu": 0.72, "rate": 1e-3, "relax": {"duration": 200}},
+      "path": {"segments": [)" +
+                             segments + R"(]}, "measure": {)" + measure + "}}";
+    summary =
+        run_element_test(Scene::read(Reader(parse_json(json, "scene.json"), "scene.json"), ""), dir / name);
+    return Record::read_csv(dir / name / "record.csv", record_columns());
+  }
+
+  fs::path dir;
+  RunSummary summary;
+};
+
+void expect_kept(const Record& record, const char* column, double target, double tolerance) {
+  for (std::size_t i = 1; i < record.rows(); ++i)
+    EXPECT_NEAR(record[column][i] / target, 1, tolerance) << column << " in row " << i;
+}
+
+TEST_F(ControlledDrive, ConstantPressureAtEveryRow) {
+  const Record r =
+      run(R"({"mode": "constant_p", "amount": 0.04, "rate": 1e-4, "servo": {"tolerance": 2e-3}})");
+  ASSERT_EQ(r.rows(), 11u);
+  EXPECT_EQ(summary.cut_short, "");
+  expect_kept(r, "P", r["P"][0], 2e-3);
+  for (std::size_t k = 1; k <= 10; ++k) EXPECT_NEAR(r["eps_dev"][k], 0.004 * static_cast<double>(k), 1e-4);
+  EXPECT_GT(r["syy"][10], r["sxx"][10]);
+  EXPECT_NE(r["nu"][10], r["nu"][0]);
+}
+
+TEST_F(ControlledDrive, SideStressesAtEveryRow) {
+  const Record biaxial =
+      run(R"({"mode": "biaxial", "stress": 0.03, "controls": {"eps_dev": 0.04}, "rate": 1e-4})");
+  expect_kept(biaxial, "sxx", 0.03, 1e-3);
+  EXPECT_NEAR(biaxial["eps_dev"][10], 0.04, 1e-4);
+  const Record triaxial = run(R"({"mode": "triaxial", "amount": 0.04, "rate": 1e-4})", R"("rows": 10)", "b");
+  expect_kept(triaxial, "sxx", triaxial["sxx"][0], 1e-3);
+  expect_kept(triaxial, "syy", triaxial["syy"][0], 1e-3);
+  EXPECT_GT(triaxial["szz"][10], triaxial["szz"][0]);
+  // 0.04 of axial strain, and the sides give way
+  EXPECT_GT(triaxial["eps_dev"][10], 0.04);
+}
+
+TEST_F(ControlledDrive, TriaxialShearsAndDilatesADensePacking) {
+  const Record r = run(R"({"mode": "iso", "controls": {"nu": 0.82}, "rate": 1e-3},
+                          {"mode": "iso", "controls": {"nu": 0.68}, "rate": 2e-4}, {"mode": "relax"},
+                          {"mode": "triaxial", "amount": 0.1, "rate": 2e-4})",
+                       R"("rows": 10)", "a", 500);
+  ASSERT_EQ(r.rows(), 32u);
+  EXPECT_GT(r["s_dev"][31], 0.1);
+  EXPECT_LT(r["nu"][31], r["nu"][21]);
+}
+
+TEST_F(ControlledDrive, IsotropicStressThenATargetFromThere) {
+  const Record r = run(R"({"mode": "isotropic_stress", "P": 0.05, "rate": 1e-4},
+                          {"mode": "isotropic_stress", "P": 0.02, "rate": 1e-4},
+                          {"mode": "iso", "controls": {"nu": 0.73}, "rate": 1e-4},
+                          {"mode": "d2", "controls": {"eps_dev": 0.03}, "rate": 1e-4})",
+                       R"("rows": 5, "snapshots": [{"segment": 0}, {"segment": 2, "nu": 0.72}])");
+  ASSERT_EQ(r.rows(), 1u + 1 + 1 + 5 + 5);
+  for (const char* side : {"sxx", "syy", "szz"}) {
+    EXPECT_NEAR(r[side][1] / 0.05, 1, 1e-3);
+    EXPECT_NEAR(r[side][2] / 0.02, 1, 1e-3);
+  }
+  EXPECT_NEAR(r["nu"][7], 0.73, 1e-12);
+  EXPECT_NEAR(r["eps_vol"][7], std::log(0.73 / 0.72), 1e-12);
+  EXPECT_NEAR(r["eps_dev"][12], 0.03, 1e-12);
+  const auto frames = list_frames(dir / "a" / "snapshots.h5");
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_NEAR(frames[0].nu, r["nu"][1], 1e-12);
+  EXPECT_NEAR(frames[1].nu, 0.72, 1e-4);
+}
+
+TEST_F(ControlledDrive, StrainPresetsAreControl) {
+  const double third = 0.06 / 3, d2 = 0.02 / std::sqrt(3.0), d3 = 0.02 / 1.5;
+  run(R"({"mode": "iso", "amount": 0.06, "rate": 5e-4}, {"mode": "uni", "amount": -0.02, "rate": 5e-4},
+         {"mode": "d2", "amount": 0.02, "rate": 5e-4}, {"mode": "d3", "amount": 0.02, "rate": 5e-4})");
+  const auto control = [](double x, double y, double z, const char* profile) {
+    return R"({"mode": "control", "x": {"strain": )" + to_text(x) + R"(}, "y": {"strain": )" + to_text(y) +
+           R"(}, "z": {"strain": )" + to_text(z) + R"(}, "rate": 5e-4, "profile": ")" + profile + "\"}";
+  };
+  run(control(third, third, third, "cosine") + "," + control(0, 0, -0.02, "cosine") + "," +
+          control(-d2, d2, 0, "constant") + "," + control(-0.5 * d3, -0.5 * d3, d3, "constant"),
+      R"("rows": 10)", "b");
+  EXPECT_EQ(read_file(dir / "a" / "record.csv"), read_file(dir / "b" / "record.csv"));
+}
+
+TEST_F(ControlledDrive, RowsDoNotChangeTheRun) {
+  const char* const segment = R"({"mode": "triaxial", "amount": 0.02, "rate": 2e-4, "profile": "steered"})";
+  const Record coarse = run(segment, R"("rows": 5)"), again = run(segment, R"("rows": 5)", "b"),
+               fine = run(segment, R"("rows": 10)", "c");
+  EXPECT_EQ(read_file(dir / "a" / "record.csv"), read_file(dir / "b" / "record.csv"));
+  for (std::size_t k = 0; k <= 5; ++k) EXPECT_EQ(coarse["szz"][k], fine["szz"][2 * k]);
+}
+
+TEST_F(ControlledDrive, SaysWhatItCannotReachAndKeepsTheRest) {
+  // Twenty times k* is more than grains at nu = 1 bear.
+  const Record r = run(R"({"mode": "d2", "amount": 0.01, "rate": 1e-3},
+                          {"mode": "isotropic_stress", "P": 20, "rate": 1e-2}, {"mode": "relax"})",
+                       R"("rows": 4)");
+  EXPECT_EQ(r.rows(), 5u);
+  EXPECT_THAT(summary.cut_short, testing::StartsWith("segment 1 (isotropic_stress): s"));
+  EXPECT_THAT(summary.cut_short, testing::HasSubstr(" cannot be kept at 20 to 0.001: it is "));
+  EXPECT_EQ(summary.warnings.back(), summary.cut_short);
+  EXPECT_THAT(read_file(dir / "a" / "provenance.json"), testing::HasSubstr("cannot be kept at 20"));
+  run(R"({"mode": "constant_p", "P": 0.05, "amount": 0.01, "rate": 1e-4, "servo": {"rate": 1e-6, "wait": 20}})",
+      R"("rows": 4)", "b");
+  EXPECT_THAT(summary.cut_short, testing::HasSubstr("P cannot be kept at 0.05"));
+  EXPECT_THAT(summary.cut_short, testing::HasSubstr("us out of tolerance; the test ends there"));
+}
+
+TEST_F(ControlledDrive, GoesOnFromACheckpoint) {
+  const std::string json =
+      R"({"preparation": {"count": 150, "seed": 3, "nu": 0.72, "rate": 1e-3, "relax": {"duration": 50}},
+    "path": {"segments": [{"mode": "triaxial", "stress": 0.04, "amount": 0.01, "rate": 3e-4, "profile": "steered"},
+                          {"mode": "iso", "controls": {"nu": 0.74}, "rate": 1e-3}]},
+    "measure": {"rows": 5, "snapshots": [{"segment": 0, "eps_dev": 0.01}, {"segment": 0}]}})";
+  const Scene scene = Scene::read(Reader(parse_json(json, "scene.json"), "scene.json"), "");
+  run_element_test(scene, dir / "a");
+  int stops = 0;
+  RunSummary part;
+  for (part.stopped = true; part.stopped; ++stops) {
+    std::atomic<bool> stop = false;
+    int looks = 0;
+    RunHooks hooks;
+    hooks.stop = &stop;
+    hooks.progress = [&](double, const std::string&) { stop = ++looks > 4; };
+    part = run_element_test(scene, dir / "b", hooks);
+  }
+  EXPECT_GT(stops, 3);
+  EXPECT_EQ(read_file(dir / "a" / "record.csv"), read_file(dir / "b" / "record.csv"));
+  EXPECT_EQ(list_frames(dir / "b" / "snapshots.h5").size(), list_frames(dir / "a" / "snapshots.h5").size());
+}
+
+TEST_F(ControlledDrive, WarnsOfASnapshotThatWasNotPassed) {
+  run(R"({"mode": "triaxial", "amount": 0.005, "rate": 2e-4})",
+      R"("rows": 2, "snapshots": [{"segment": 0, "nu": 0.5}, {"segment": 0, "eps_dev": 0.003}])");
+  ASSERT_FALSE(summary.warnings.empty());
+  EXPECT_THAT(summary.warnings,
+              testing::Contains("segment 0 never came to nu = 0.5, so there is no snapshot of it"));
+  const auto frames = list_frames(dir / "a" / "snapshots.h5");
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_NEAR(frames[0].eps_dev, 0.003, 1e-4);
+}
+
+/// A leg that is left after any step and gone on with is the same leg.
+TEST(ControlledLeg, GoesOnWhereItWasLeft) {
+  const Material material;
+  const Path path = Path::read(Reader(parse_json(R"({"segments": [
+      {"mode": "biaxial", "stress": 0.1, "amount": 0.002, "rate": 5e-4, "profile": "steered", "Ek_over_Ep": 1e-2}]})",
+                                                 "p.json"),
+                                      "p.json"));
+  const Leg leg = path.leg(0, Waypoint(0.75));
+  const StepPlan plan = plan_steps(leg, 0.02, 1);
+  const State start = test::squeezed(material, 100, 1, 0.75, 0);
+  const auto end = [&](std::uint64_t pause) {
+    Dynamics dynamics(material, start);
+    LegState state;
+    bool over = false;
+    while (!over) {
+      over = true;
+      drive(dynamics, leg, plan, state, [&](std::uint64_t step) {
+        over = pause == 0 || step % pause != 0;
+        return over;
+      });
+    }
+    EXPECT_FALSE(state.control.lost);
+    EXPECT_GE(state.control.progress, 1);
+    return dynamics.state();
+  };
+  const State whole = end(0);
+  EXPECT_GT(whole.step, 100u);
+  EXPECT_TRUE(whole == end(1));
+  EXPECT_TRUE(whole == end(7));
+}
+
+TEST(ControlledLeg, SteeredRateFollowsTheEnergies) {
+  const Material material;
+  const auto speed_at_end = [&](const std::string& ratio, const std::string& amount) {
+    const std::string json =
+        R"({"segments": [{"mode": "d2", "rate": 1e-4, "profile": "steered", "amount": )" + amount +
+        R"(, "Ek_over_Ep": )" + ratio + "}]}";
+    const Leg leg = Path::read(Reader(parse_json(json, "p.json"), "p.json")).leg(0, Waypoint(0.75));
+    Dynamics dynamics(material, test::squeezed(material, 100, 1, 0.75, 0));
+    LegState state;
+    drive(dynamics, leg, plan_steps(leg, 0.02, 1), state, [](std::uint64_t) { return true; });
+    const Strain3 strain = leg_strain(dynamics, state);
+    EXPECT_NEAR(strain[1], leg.strain[1], 1e-3);
+    EXPECT_NEAR(strain[0] + strain[1] + strain[2], 0, 1e-11);  // rounding of many steps
+    return state.control.speed;
+  };
+  EXPECT_EQ(speed_at_end("1e-12", "0.01"), slowest_steered);
+  EXPECT_EQ(speed_at_end("0.9", "0.05"), fastest_steered);
+}
+
+}  // namespace
+}  // namespace grainlaw::dem
