@@ -78,7 +78,8 @@ TEST_F(Simulate, InterruptedItSaysHowToGoOn) {
   EXPECT_TRUE(
       refuses(run({"simulate", "s.json", "-o", "out/x", "--resume"}),
               {"checkpoint.bin: scene: is of another scene than s.json (path.segments[0].duration: "}));
-  Running again(folder, {"simulate", "long.json", "-o", "out/x", "--resume"});
+  Running again(folder, {"simulate", "long.json", "-o", "out/x", "--resume", "--checkpoint", "0"});
+  EXPECT_TRUE(eventually([&] { return fs::exists(folder / "out/x.part/checkpoint.old.bin"); }));
   again.send(SIGTERM);
   EXPECT_EQ(again.wait().status, 130);
 }
