@@ -216,6 +216,7 @@ int run(const Arguments& arguments) {
 Action add_bench(CLI::App& program) {
   CLI::App* bench = program.add_subcommand("bench", "Measures the program: speed against error");
   bench->require_subcommand(1);
+  bench->footer("Example:\n  grainlaw bench dem");
   CLI::App* command = bench->add_subcommand(
       "dem",
       "What a wanted error costs: the DEM over time step, rate and number of grains, against the finest");

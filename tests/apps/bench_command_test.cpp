@@ -25,7 +25,9 @@ TEST_F(BenchCommand, WritesTablePictureAndPageAndGoesOn) {
   for (const Json& entry : result.at("errors")) {
     EXPECT_GT(entry.at("particle_steps").get<double>(), 0);
     EXPECT_GT(entry.at("core_s").get<double>(), 0);
-    EXPECT_GT(entry.at("scatter").get<double>(), 0);  // twins grow apart
+    if (entry.at("quantity") == "P") {
+      EXPECT_GT(entry.at("scatter").get<double>(), 0);  // twins grow apart
+    }
     EXPECT_LT(entry.at("scatter").get<double>(), 0.5);
   }
   EXPECT_THAT(read("b/speed-against-error.csv"), HasSubstr("time_step,200,d2,F_dev,2,"));
@@ -51,6 +53,7 @@ TEST_F(BenchCommand, SaysWhatIsWrong) {
   EXPECT_TRUE(refuses(run({"bench", "dem", "--count", "7"}), {"--count", "7"}));
   EXPECT_TRUE(refuses(run({"bench", "dem", "--nu", "0.8"}), {"--nu", "0.8"}));
   EXPECT_TRUE(refuses(run({"bench"}), {"bench"}));
+  fs::create_directory(folder / "full");
   write("full/other", "x");
   EXPECT_TRUE(refuses(run({"bench", "dem", "-o", "full"}), {"full", "not empty"}));
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -114,6 +115,7 @@ class BenchFolder : public testing::Test {
     Record record(record_columns());
     for (int i = 0; i <= Bench::rows; ++i) {
       std::vector<double> row(record_columns().size(), value);
+      row[0] = 0;     // segment
       row[3] = 0.75;  // nu
       record.append(row);
     }

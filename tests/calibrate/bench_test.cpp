@@ -27,7 +27,7 @@ TEST(Bench, RunsEachTestOnceAfterItsPacking) {
     ASSERT_EQ(jobs[i].needs.has_value(), from_snapshot) << jobs[i].record;
     if (!from_snapshot) continue;
     ASSERT_LT(*jobs[i].needs, i);
-    const std::string snapshot = jobs[i].scene.at("preparation").at("snapshot");
+    const auto snapshot = jobs[i].scene.at("preparation").at("snapshot").get<std::string>();
     EXPECT_TRUE(snapshot.starts_with("../" + jobs[*jobs[i].needs].record + "/")) << snapshot;
   }
 }
@@ -107,7 +107,7 @@ TEST(Bench, TwinsStartFromSnapshotsOfTheirOwn) {
   std::set<std::string> starts;
   const auto scenes = scenes_of(plan(bench));
   for (const std::string& name : sweeps(bench).front().variants.front().records.front())
-    starts.insert(scenes.at(name).at("preparation").at("snapshot"));
+    starts.insert(scenes.at(name).at("preparation").at("snapshot").get<std::string>());
   EXPECT_EQ(starts.size(), 3u);
 }
 
