@@ -175,6 +175,9 @@ void read_profile(Reader& reader, Segment& segment) {
   if (segment.profile == Profile::steered) {
     segment.wanted_ratio = reader.number("Ek_over_Ep", inside(0, 1), segment.wanted_ratio);
     if (segment.duration) reader.fail("duration", "means nothing with a steered rate; give rate");
+    if (std::any_of(segment.strain.begin() + 3, segment.strain.end(), [](double e) { return e != 0; }))
+      reader.fail("profile",
+                  "must not be steered where strain has shear components: only edges can be steered");
   }
   const bool axial = segment.mode == Mode::biaxial || segment.mode == Mode::triaxial;
   if (!axial || !segment.to_eps_dev) return;
