@@ -69,8 +69,9 @@ int run_command_line(int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-' && is_unknown(argv[1]))
     return complain_usage(
         program,
-        fmt::format("unknown command \"{}\"; known are calibrate, simulate, predict, fit, report, export, bench",
-                    argv[1]));
+        fmt::format(
+            "unknown command \"{}\"; known are calibrate, simulate, predict, fit, report, export, bench",
+            argv[1]));
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version

@@ -87,7 +87,8 @@ TEST_F(Program, EveryExampleOfTheManualWorks) {
     fs::remove_all(folder / "out/quick");
     fs::rename(folder / "kept", folder / "out/quick");
   }
-  for (const char* name : {"calibrate", "simulate", "predict", "fit", "report", "export", "--version", "--help"})
+  for (const char* name :
+       {"calibrate", "simulate", "predict", "fit", "report", "export", "--version", "--help"})
     EXPECT_GT(seen[name], 0) << name;
 }
 

@@ -1,6 +1,6 @@
-// The records of the quick campaign that stand in data/records: what must show on them, and the thesis's Table 2.1 and
-// 2.2 beside it. Tolerances are the standard errors of the fits, from the scatter over three to five packings of 1000
-// grains.
+// The records of the quick campaign that stand in data/records: what must show on them, and the thesis's
+// Table 2.1 and 2.2 beside it. Tolerances are the standard errors of the fits, from the scatter over three to
+// five packings of 1000 grains.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,8 @@ TEST(QuickCampaign, EveryCheckHolds) {
 /// Student's t of four degrees of freedom exceeds 4.6 in one of a hundred cases.
 void expect_near_thesis(const char* name, const model::Parameter& p) {
   ASSERT_TRUE(p.thesis && p.stderr_) << name;
-  EXPECT_LT(std::abs(p.value - *p.thesis), 4.6 * *p.stderr_) << name << " " << p.value << " +- " << *p.stderr_;
+  EXPECT_LT(std::abs(p.value - *p.thesis), 4.6 * *p.stderr_)
+      << name << " " << p.value << " +- " << *p.stderr_;
 }
 
 TEST(QuickCampaign, Table2_1WithinItsErrors) {

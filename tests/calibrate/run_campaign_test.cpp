@@ -52,7 +52,7 @@ class RunCampaign : public testing::Test {
                            .radius = {1}};
       dem::SnapshotWriter(part / "snapshots.h5", one.radius).append(one, {});
     }
-    return {0.01, 1000, {}, false};
+    return {0.01, 1000, {}, false, {}};
   }
 
   CampaignFolder open(CampaignFolder::Use use = CampaignFolder::Use::fresh) { return {campaign, dir, use}; }
@@ -181,7 +181,7 @@ TEST_F(RunCampaign, StopsWhenToldAndGoesOnLater) {
     if (!part.stem().string().starts_with("iso")) {
       stop = true;
       while (!hooks.stop->load()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      return dem::RunSummary{0, 0, {}, true};
+      return dem::RunSummary{0, 0, {}, true, {}};
     }
     return write_record(scene, part);
   };
