@@ -108,13 +108,13 @@ int run(const Arguments& arguments) {
   arguments.run.force_simd();
   arguments.run.checkpoint_every();  // bad input is refused before anything is made
   threads_of(arguments);
+  if (arguments.output.empty() && !arguments.explain)
+    throw Error("simulate: -o DIR is missing, the directory to make; or --explain, to make none");
   const dem::Scene scene = dem::Scene::load(arguments.scene);
   if (arguments.explain) {
     write_stdout(explanation(scene, dem::cost_of(scene)));
     return all_well;
   }
-  if (arguments.output.empty())
-    throw Error("simulate: -o DIR is missing, the directory to make; or --explain, to make none");
   const fs::path folder = folder_of(arguments.output), part = folder.string() + ".part";
   check_free(folder, arguments.output);
   fs::create_directories(folder.parent_path());

@@ -97,7 +97,11 @@ Json measure_json(const BenchSetting& setting, Json snapshots) {
           {"time_step_gas", 1.0 / setting.gas_steps}};
 }
 
-Json packing_scene(const BenchSetting& setting, std::int64_t seed) {
+/// The packing that tests start from: the same for all of them that have its number of grains and gas step.
+Json packing_scene(const BenchSetting& test, std::int64_t seed) {
+  BenchSetting setting;
+  setting.count = test.count;
+  setting.gas_steps = test.gas_steps;
   const Json path{{"segments",
                    {{{"mode", "iso"}, {"controls", {{"nu", Bench::nu_start}}}, {"rate", compression_rate}},
                     {{"mode", "relax"}}}}};

@@ -11,7 +11,7 @@ constexpr Components stress{"sxx", "syy", "szz", "syz", "sxz", "sxy"},
     fabric{"Fxx", "Fyy", "Fzz", "Fyz", "Fxz", "Fxy"};
 
 /// Every component that counts is there.
-bool has_all(const Record& rows, const Components& names, const Strain3& along) {
+bool has_all(const Record& rows, const Components& names, const StrainTensor& along) {
   for (std::size_t k = 0; k < names.size(); ++k)
     if (along[k] != 0 && !rows.has(names[k])) return false;
   return true;
@@ -19,11 +19,11 @@ bool has_all(const Record& rows, const Components& names, const Strain3& along) 
 
 /// What the components of Q must be multiplied with: the unit tensor along the axis, times sqrt(3/2). The sum
 /// is sqrt(3 J2) of a Q that is along it.
-Strain3 projector(const Strain3& axis) {
+StrainTensor projector(const StrainTensor& axis) {
   double squares = 0;
   for (std::size_t k = 0; k < 6; ++k) squares += (k < 3 ? 1 : 2) * axis[k] * axis[k];
   const double factor = std::sqrt(1.5 / squares);
-  Strain3 product;
+  StrainTensor product;
   for (std::size_t k = 0; k < 6; ++k) product[k] = factor * (k < 3 ? 1 : 2) * axis[k];  // ab and ba
   return product;
 }
@@ -33,7 +33,7 @@ Strain3 projector(const Strain3& axis) {
 ShearColumn shear_column(const TestRecord& test, std::size_t leg, const std::string& quantity) {
   const bool of_stress = quantity == "s_dev";
   const Components& names = of_stress ? stress : fabric;
-  const Strain3 along = projector(SignConvention(test.legs).axis(leg));
+  const StrainTensor along = projector(SignConvention(test.legs).axis(leg));
   if (!has_all(test.rows, names, along)) return {test.rows[quantity], false};
   ShearColumn column{std::vector<double>(test.rows.rows(), 0.0), true};
   for (std::size_t i = 0; i < column.values.size(); ++i) {

@@ -129,14 +129,14 @@ std::string short_text(double x) {
 
 }  // namespace
 
-Strain3 leg_strain(const Dynamics& dynamics, const LegState& state) {
+StrainTensor leg_strain(const Dynamics& dynamics, const LegState& state) {
   const Sym6 strain = dynamics.cell().strain_from(state.start_edges);
   return {strain[0], strain[1], strain[2]};
 }
 
 double leg_eps_dev(const Dynamics& dynamics, const Leg& leg, const LegState& state) {
   return leg.eps_dev[0] +
-         signed_deviator(leg_strain(dynamics, state), leg.axis.value_or(Strain3{-0.5, -0.5, 1}));
+         signed_deviator(leg_strain(dynamics, state), leg.axis.value_or(StrainTensor{-0.5, -0.5, 1}));
 }
 
 void follow_controlled(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,

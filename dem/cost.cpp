@@ -80,7 +80,7 @@ class TrialPacking {
 
  private:
   /// `strain_per_step` at t_c/10; a relaxation takes a thousand steps.
-  void go(Mode mode, const Strain3& strain, double strain_per_step) {
+  void go(Mode mode, const StrainTensor& strain, double strain_per_step) {
     Leg leg{};
     leg.mode = mode;
     leg.strain = strain;
@@ -264,7 +264,7 @@ std::vector<StageCost> planned(const Scene& scene, const State& start) {
   check_width(stages, start, scene);
   std::vector<StageCost> list;
   for (const Stage& stage : stages) {
-    const Strain3& strain = stage.leg.strain;
+    const StrainTensor& strain = stage.leg.strain;
     const double after = nu * std::exp(strain[0] + strain[1] + strain[2]);
     list.push_back({stage, {nu, after}, 0});
     nu = after;

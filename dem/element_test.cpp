@@ -171,7 +171,7 @@ void ElementTest::leave_leg() {
   next.eps_vol = leg.eps_vol[1];
   next.eps_dev = leg.eps_dev[1];
   if (leg.controlled()) {
-    const Strain3 strain = leg_strain(dynamics_, place_.leg);
+    const StrainTensor strain = leg_strain(dynamics_, place_.leg);
     next.eps_vol = leg.eps_vol[0] + strain[0] + strain[1] + strain[2];
     next.eps_dev = leg_eps_dev(dynamics_, leg, place_.leg);
   }

@@ -90,7 +90,7 @@ bool Recorder::passed(const SnapshotRequest& wanted, const Dynamics& dynamics, c
   };
   if (wanted.eps_dev) return between(*wanted.eps_dev, stage.leg.eps_dev[0], eps_dev(dynamics, stage, leg));
   if (!wanted.nu) return false;
-  const Strain3 strain = leg_strain(dynamics, leg);
+  const StrainTensor strain = leg_strain(dynamics, leg);
   const double begin = stage.leg.eps_vol[0];
   return between(std::log(*wanted.nu / nu_start_), begin, begin + strain[0] + strain[1] + strain[2]);
 }

@@ -25,29 +25,29 @@ constexpr std::array all_modes{
     Mode::relax,  Mode::constant_p, Mode::biaxial, Mode::triaxial, Mode::isotropic_stress,
     Mode::control};
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
-constexpr Strain3 axis_d2{-1, 1, 0};
-constexpr Strain3 axis_uni{-0.5, -0.5, 1};
+constexpr StrainTensor axis_d2{-1, 1, 0};
+constexpr StrainTensor axis_uni{-0.5, -0.5, 1};
 
 /// a : b
-double dot(const Strain3& a, const Strain3& b) {
+double dot(const StrainTensor& a, const StrainTensor& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
 }
 
-Strain3 deviator(const Strain3& e) {
+StrainTensor deviator(const StrainTensor& e) {
   const double mean = (e[0] + e[1] + e[2]) / 3;
   return {e[0] - mean, e[1] - mean, e[2] - mean, e[3], e[4], e[5]};
 }
 
-double magnitude(const Strain3& e) { return deviator_magnitude(e); }
+double magnitude(const StrainTensor& e) { return deviator_magnitude(e); }
 
-bool has_deviator(const Strain3& e) {
+bool has_deviator(const StrainTensor& e) {
   double sum = 0;
   for (const double component : e) sum += std::abs(component);
   return magnitude(e) > 1e-12 * sum;
 }
 
 /// The axis of a strain (see SignConvention); `before` is the axis in force, if any.
-Strain3 axis_of(Mode mode, const Strain3& strain, const std::optional<Strain3>& before) {
+StrainTensor axis_of(Mode mode, const StrainTensor& strain, const std::optional<StrainTensor>& before) {
   if (mode == Mode::d2 || mode == Mode::biaxial) return axis_d2;
   if (mode == Mode::uni || mode == Mode::d3 || mode == Mode::triaxial) return axis_uni;
   if (coaxial(strain, axis_d2)) return axis_d2;
@@ -104,7 +104,7 @@ void read_strain(Reader& reader, Segment& segment) {
     reader.fail("strain", "must be three numbers [xx, yy, zz] or six [xx, yy, zz, yz, xz, xy], got " +
                               std::to_string(strain.size()));
   std::copy(strain.begin(), strain.end(), segment.strain.begin());
-  if (segment.strain == Strain3{}) reader.fail("strain", "must not be zero");
+  if (segment.strain == StrainTensor{}) reader.fail("strain", "must not be zero");
 }
 
 void read_amount(Reader& reader, Segment& segment) {
@@ -260,18 +260,18 @@ std::vector<Segment> read_segments(Reader& owner) {
   return all;
 }
 
-Strain3 d2_strain(double eps_dev) {
+StrainTensor d2_strain(double eps_dev) {
   const double e = eps_dev / std::numbers::sqrt3;
   return {-e, e, 0};
 }
 
-Strain3 d3_strain(double eps_dev) {
+StrainTensor d3_strain(double eps_dev) {
   const double e = eps_dev / 1.5;
   return {-0.5 * e, -0.5 * e, e};
 }
 
 /// Logarithmic strain of a segment, given volume fraction and accumulated strains where it begins.
-Strain3 strain_of(const Segment& segment, const Waypoint& at) {
+StrainTensor strain_of(const Segment& segment, const Waypoint& at) {
   double amount = 0;
   if (segment.amount) amount = *segment.amount;
   if (segment.to_nu) amount = std::log(*segment.to_nu / at.nu);
@@ -305,14 +305,14 @@ Strain3 strain_of(const Segment& segment, const Waypoint& at) {
 }
 
 /// The mode's own strain (the number `rate` multiplies): the largest component.
-double largest(const Strain3& e) {
+double largest(const StrainTensor& e) {
   double most = 0;
   for (const double component : e) most = std::max(most, std::abs(component));
   return most;
 }
 
 /// Three numbers where the axes stay orthogonal, else six.
-Json strain_json(const Strain3& e) {
+Json strain_json(const StrainTensor& e) {
   Json list = Json::array({e[0], e[1], e[2]});
   if (e[3] != 0 || e[4] != 0 || e[5] != 0) list.insert(list.end(), {e[3], e[4], e[5]});
   return list;
@@ -398,7 +398,7 @@ std::string name_of(Mode mode) {
 
 bool Segment::only_waits() const {
   return mode == Mode::relax || mode == Mode::isotropic_stress ||
-         (mode == Mode::control && strain == Strain3{});
+         (mode == Mode::control && strain == StrainTensor{});
 }
 
 std::string name_of(Profile profile) {
@@ -413,8 +413,8 @@ std::string name_of(Profile profile) {
   return "";
 }
 
-bool coaxial(const Strain3& a, const Strain3& b) {
-  const Strain3 u = deviator(a), v = deviator(b);
+bool coaxial(const StrainTensor& a, const StrainTensor& b) {
+  const StrainTensor u = deviator(a), v = deviator(b);
   if (!has_deviator(a) || !has_deviator(b)) return true;
   return std::abs(dot(u, v)) >= (1 - 1e-12) * std::sqrt(dot(u, u) * dot(v, v));
 }
@@ -456,7 +456,7 @@ Json Path::to_json() const {
   return {{"start", start_json(start)}, {"segments", list}};
 }
 
-void Waypoint::move(const Strain3& strain, const std::optional<Strain3>& leg_axis) {
+void Waypoint::move(const StrainTensor& strain, const std::optional<StrainTensor>& leg_axis) {
   if (leg_axis) axis = leg_axis;
   if (has_deviator(strain)) eps_dev += signed_deviator(strain, axis.value_or(axis_uni));
   eps_vol += strain[0] + strain[1] + strain[2];
@@ -525,12 +525,12 @@ bool Path::by_stress() const {
                      [](const Segment& segment) { return segment.control.by_stress(); });
 }
 
-double signed_deviator(const Strain3& strain, const Strain3& axis) {
+double signed_deviator(const StrainTensor& strain, const StrainTensor& axis) {
   return std::copysign(magnitude(strain), dot(strain, axis));
 }
 
 SignConvention::SignConvention(const std::vector<Leg>& legs) : axes_(legs.size(), axis_uni) {
-  std::optional<Strain3> axis;
+  std::optional<StrainTensor> axis;
   std::size_t leading = 0;  // legs before the first axis is known
   for (std::size_t i = 0; i < legs.size(); ++i) {
     if (legs[i].axis || has_deviator(legs[i].strain)) {
@@ -546,7 +546,7 @@ SignConvention::SignConvention(const std::vector<Leg>& legs) : axes_(legs.size()
 }
 
 double SignConvention::signed_deviator(const Sym6& q, std::size_t leg) const {
-  const Strain3& axis = axes_.at(leg);
+  const StrainTensor& axis = axes_.at(leg);
   return std::copysign(deviator_magnitude(q), dot(q, axis));
 }
 

@@ -32,7 +32,7 @@ std::string name_of(Mode mode);
 std::string name_of(Profile profile);
 
 /// Logarithmic strain, compression positive: tensor components xx, yy, zz, yz, xz, xy.
-using Strain3 = Sym6;
+using StrainTensor = Sym6;
 
 /// Start of a path; what is not given comes from the parameter set (law) or is measured (DEM).
 struct Start {
@@ -45,7 +45,7 @@ struct Segment {
   std::optional<double> to_nu, to_eps_vol, to_eps_dev;  ///< controls: at most one is set
   std::optional<double> amount;  ///< natural amount of the mode: eps_vol for iso and uni, eps_dev for d2, d3
                                  ///< and constant_p, axial strain for biaxial and triaxial
-  Strain3 strain{};              ///< only for components and control
+  StrainTensor strain{};         ///< only for components and control
   Mode shear = Mode::d2;         ///< only for constant_p: d2 or d3
   Control control;
   std::optional<double> rate;      ///< mean strain rate of the mode, 1/us
@@ -62,22 +62,22 @@ struct Segment {
 /// strain is: what the law cannot walk along.
 struct Leg {
   Mode mode;
-  Strain3 strain;     ///< logarithmic strain of this leg, compression positive; zero for relax. Of an axis
-                      ///< under a stress target, or beside a mean one: without what the servo adds
-  double eps_vol[2];  ///< from the path's start, at begin and end, of `strain`
-  double eps_dev[2];  ///< sum of the signed increments from the path's start, at begin and end, of `strain`
-  double duration;    ///< us; for relax and a leg that only waits for stress targets the longest
+  StrainTensor strain;  ///< logarithmic strain of this leg, compression positive; zero for relax. Of an axis
+                        ///< under a stress target, or beside a mean one: without what the servo adds
+  double eps_vol[2];    ///< from the path's start, at begin and end, of `strain`
+  double eps_dev[2];    ///< sum of the signed increments from the path's start, at begin and end, of `strain`
+  double duration;      ///< us; for relax and a leg that only waits for stress targets the longest
   Profile profile;
   double tolerance;
   Control control;
   std::optional<double> to_eps_dev;  ///< ends where the box has this eps_dev, else when `strain` is applied
   double wanted_ratio = 1e-4;        ///< E_k/E_p that a steered rate keeps
-  std::optional<Strain3> axis;       ///< of its deviatoric scalars; none if it does not shear
+  std::optional<StrainTensor> axis;  ///< of its deviatoric scalars; none if it does not shear
 
   /// Whether the grains decide how it goes on: under stress control, or at a steered rate.
   bool controlled() const { return control.by_stress() || profile == Profile::steered; }
   /// Whether any axis is driven at a strain rate; else it relaxes, or waits for stress targets.
-  bool drives() const { return strain != Strain3{}; }
+  bool drives() const { return strain != StrainTensor{}; }
   /// Fraction of the leg's logarithmic strain applied at time t in [0, duration], the same for all
   /// components, so that D2 and D3 keep the volume at all times. Cosine: (1 - cos(pi t/duration))/2, which is
   /// Eq. 2.2 to first order in the strain.
@@ -90,12 +90,12 @@ struct Leg {
 struct Waypoint {
   double nu_start;
   double nu;
-  double eps_vol = 0, eps_dev = 0;  ///< from the path's start
-  std::optional<Strain3> axis;      ///< of the last leg that sheared
+  double eps_vol = 0, eps_dev = 0;   ///< from the path's start
+  std::optional<StrainTensor> axis;  ///< of the last leg that sheared
 
   explicit Waypoint(double start) : nu_start(start), nu(start) {}
   /// Goes on by the logarithmic strain of a leg, or of part of it.
-  void move(const Strain3& strain, const std::optional<Strain3>& leg_axis);
+  void move(const StrainTensor& strain, const std::optional<StrainTensor>& leg_axis);
 };
 
 struct Path {
@@ -121,7 +121,7 @@ struct Path {
 };
 
 /// Logarithmic strain as one number: sqrt(3 J2) with the sign of its projection on the axis.
-double signed_deviator(const Strain3& strain, const Strain3& axis);
+double signed_deviator(const StrainTensor& strain, const StrainTensor& axis);
 
 /// Sign convention of deviatoric scalars (Fsgn): the sign of a tensor's projection on the leg's axis, D2 (-1,
 /// 1, 0), that is sgn(Qyy - Qxx); UNI and D3 (-1/2, -1/2, 1), that is sgn(Qzz - (Qxx+Qyy)/2). `components`
@@ -132,13 +132,13 @@ class SignConvention {
   explicit SignConvention(const std::vector<Leg>& legs);
   /// Deviatoric magnitude sqrt(3 J2) of q with its sign in leg i.
   double signed_deviator(const Sym6& q, std::size_t leg) const;
-  const Strain3& axis(std::size_t leg) const { return axes_.at(leg); }
+  const StrainTensor& axis(std::size_t leg) const { return axes_.at(leg); }
 
  private:
-  std::vector<Strain3> axes_;
+  std::vector<StrainTensor> axes_;
 };
 
 /// True if the deviators of a and b are parallel (either sign), or one has none.
-bool coaxial(const Strain3& a, const Strain3& b);
+bool coaxial(const StrainTensor& a, const StrainTensor& b);
 
 }  // namespace grainlaw

@@ -238,7 +238,7 @@ MeasuredPath measured_path(const Record& record, const Path& path) {
     step.key = "row " + std::to_string(row + 1);
     step.mode = volume == 0 && shear == 0 ? Mode::relax : Mode::components;
     step.duration = 1;
-    const Strain3& axis = sign.axis(i);
+    const StrainTensor& axis = sign.axis(i);
     const double size = signed_deviator(axis, axis);
     for (std::size_t c = 0; c < 3; ++c) step.strain[c] = volume / 3 + shear * axis[c] / size;
     measured.path.segments.push_back(step);

@@ -209,7 +209,7 @@ TEST_F(BadInput, CommandLines) {
       {{"calibrat"}, "unknown command \"calibrat\""},
       {{"--vesion"}, "grainlaw: unknown option --vesion; see grainlaw --help"},
       {{"simulate"}, "grainlaw simulate: SCENE.json is required; see grainlaw simulate --help"},
-      {{"simulate", "s.json"}, "--output is required"},
+      {{"simulate", "s.json"}, "simulate: -o DIR is missing"},
       {{"calibrate", "--jobs", "0"}, "--jobs: must be a whole number from 1 to 1024, got 0"},
       {{"calibrate", "--jobs", "many"}, "--jobs: must be a whole number from 1 to 1024, got many"},
       {{"calibrate", "a", "b"}, "grainlaw calibrate: The following argument was not expected: b"},

@@ -136,8 +136,8 @@ inline void write_record(const std::filesystem::path& dir, const std::string& pa
 /// Gives the record `dir` the diagonal components of stress and fabric: those of s_dev and F_dev along the
 /// deviator `axis`, and beside it a deviator across, which is none of the mode's but adds to sqrt(3 J2). The
 /// columns s_dev and F_dev become that sqrt(3 J2), with the sign of what is along.
-inline void add_components(const std::filesystem::path& dir, const Strain3& axis, const Strain3& across,
-                           double size) {
+inline void add_components(const std::filesystem::path& dir, const StrainTensor& axis,
+                           const StrainTensor& across, double size) {
   const Record old = Record::read_csv(dir / "record.csv");
   std::vector<std::string> names = old.columns();
   for (const char* name : {"sxx", "syy", "szz", "Fxx", "Fyy", "Fzz"}) names.emplace_back(name);

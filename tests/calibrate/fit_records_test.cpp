@@ -321,7 +321,7 @@ double value_of(const Json& fit, const std::string& parameter) {
   throw std::runtime_error("no parameter " + parameter);
 }
 
-constexpr Strain3 d2_axis{-1 / 1.7320508075688772, 1 / 1.7320508075688772, 0},
+constexpr StrainTensor d2_axis{-1 / 1.7320508075688772, 1 / 1.7320508075688772, 0},
     d3_axis{-1. / 3, -1. / 3, 2. / 3};
 
 TEST_F(FitRecords, FitTheStressAndFabricAlongTheMode) {

@@ -219,7 +219,7 @@ TEST(ControlledLeg, SteeredRateFollowsTheEnergies) {
     Dynamics dynamics(material, test::squeezed(material, 100, 1, 0.75, 0));
     LegState state;
     drive(dynamics, leg, plan_steps(leg, 0.02, 1), state, [](std::uint64_t) { return true; });
-    const Strain3 strain = leg_strain(dynamics, state);
+    const StrainTensor strain = leg_strain(dynamics, state);
     EXPECT_NEAR(strain[1], leg.strain[1], 1e-3);
     EXPECT_NEAR(strain[0] + strain[1] + strain[2], 0, 1e-11);  // rounding of many steps
     return state.control.speed;

@@ -32,8 +32,9 @@ TEST(Path, ModesGiveTheirStrainRates) {
       {"mode": "iso", "amount": 0.3}, {"mode": "uni", "amount": 0.1},
       {"mode": "d3", "amount": 0.3}, {"mode": "components", "strain": [0.1, 0.2, -0.3]}]})")
                         .legs(0.3);
-  for (const double e : legs[0].strain) EXPECT_DOUBLE_EQ(e, 0.1);
-  EXPECT_EQ(legs[1].strain, (Strain3{0, 0, 0.1}));
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_DOUBLE_EQ(legs[0].strain[c], 0.1);
+  for (std::size_t c = 3; c < 6; ++c) EXPECT_EQ(legs[0].strain[c], 0);
+  EXPECT_EQ(legs[1].strain, (StrainTensor{0, 0, 0.1}));
   EXPECT_NEAR(legs[2].strain[2], 0.2, 1e-15);
   EXPECT_NEAR(legs[2].strain[0], -0.1, 1e-15);
   EXPECT_NEAR(legs[1].eps_dev[1], 0.1, 1e-15);  // |eps_dev rate| of UNI is the rate itself
@@ -127,10 +128,10 @@ TEST(Path, PresetsOfStressControl) {
   EXPECT_TRUE(legs[1].control.by_stress(0));
   EXPECT_FALSE(std::get<StressTarget>(legs[1].control.axis[0]).stress);
   EXPECT_FALSE(legs[1].control.by_stress(1) || legs[1].control.by_stress(2));
-  EXPECT_EQ(legs[1].strain, (Strain3{0, 0.1, 0}));
+  EXPECT_EQ(legs[1].strain, (StrainTensor{0, 0.1, 0}));
   for (const std::size_t side : {0u, 1u})
     EXPECT_EQ(std::get<StressTarget>(legs[2].control.axis[side]).stress, 0.01);
-  EXPECT_EQ(legs[2].strain, (Strain3{0, 0, -0.1}));
+  EXPECT_EQ(legs[2].strain, (StrainTensor{0, 0, -0.1}));
   EXPECT_EQ(legs[2].control.servo.rate, 1e-4);
   EXPECT_EQ(legs[2].control.servo.wait, 5000);  // a strain of 0.5
   EXPECT_FALSE(legs[3].drives());
@@ -152,7 +153,7 @@ TEST(Path, StrainUnderStressControlIsNotKnownInAdvance) {
   }
   EXPECT_EQ(path.nominal_legs(0.7).size(), 3u);
   Waypoint at(0.7);
-  at.move({0, 0, 0.1}, Strain3{-0.5, -0.5, 1});
+  at.move({0, 0, 0.1}, StrainTensor{-0.5, -0.5, 1});
   EXPECT_NEAR(path.leg(2, at).eps_vol[1], 0, 1e-15);
   EXPECT_NEAR(path.leg(1, at).to_eps_dev.value(), 0.3, 0);
 }
@@ -198,7 +199,7 @@ TEST(Path, SixComponentsOfStrain) {
   const Path path = path_of(R"({"segments": [{"mode": "components", "strain": [0, 0, 0, 0, 0, 0.1]},
       {"mode": "components", "strain": [0.1, 0.2, 0, 0.3, 0, -0.1]}, {"mode": "components", "strain": [0.1, 0, 0, 0, 0, 0]}]})");
   const auto legs = path.legs(0.6);
-  EXPECT_EQ(legs[1].strain, (Strain3{0.1, 0.2, 0, 0.3, 0, -0.1}));
+  EXPECT_EQ(legs[1].strain, (StrainTensor{0.1, 0.2, 0, 0.3, 0, -0.1}));
   EXPECT_NEAR(legs[0].duration, 0.1 / 2.839e-5, 1e-9);  // by its largest component
   // Pure shear: the magnitude of D2 with the same principal strains, 0.1 and -0.1.
   EXPECT_NEAR(legs[0].eps_dev[1], 0.1 * std::sqrt(3.0), 1e-15);
