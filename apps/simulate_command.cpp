@@ -45,6 +45,9 @@ fs::path folder_of(const std::string& argument) {
 }
 
 void check_free(const fs::path& folder, const std::string& shown) {
+  if (fs::is_symlink(folder))
+    throw Error(shown, "",
+                "is a link; give the directory itself: it is made by renaming, which would replace the link");
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder)) throw Error(shown, "", "is a file, must be a directory");
   if (!fs::is_empty(folder))

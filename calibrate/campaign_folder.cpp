@@ -27,21 +27,6 @@ std::string something_else(const fs::path& dir) {
   return "";
 }
 
-/// Removes files that a killed run was about to rename: NAME.partNUMBER.
-void remove_leftovers(const fs::path& dir) {
-  std::vector<fs::path> leftovers;
-  for (const fs::path& place : {dir, dir / "predictions"}) {
-    if (!fs::is_directory(place)) continue;
-    for (const auto& entry : fs::directory_iterator(place)) {
-      const std::string kind = entry.path().extension().string();
-      const bool numbered = kind.starts_with(".part") && kind.size() > 5 &&
-                            kind.find_first_not_of("0123456789", 5) == std::string::npos;
-      if (numbered && entry.is_regular_file()) leftovers.push_back(entry.path());
-    }
-  }
-  for (const auto& file : leftovers) fs::remove(file);
-}
-
 void check_usable(const fs::path& dir, const Campaign& campaign, CampaignFolder::Use use) {
   const fs::path written = dir / campaign_name;
   if (!fs::exists(written)) {
@@ -74,7 +59,8 @@ CampaignFolder::CampaignFolder(const Campaign& campaign, fs::path dir, Use use) 
   if (code) throw Error(dir_.string(), "", "cannot be made: " + code.message());
   try {
     lock_ = std::make_unique<LockFile>(dir_ / lock_name, dir_);
-    remove_leftovers(dir_);
+    for (const fs::path& place : {dir_, dir_ / "predictions"})
+      if (fs::is_directory(place)) remove_half_written(place);
     if (fs::exists(dir_ / campaign_name))
       check_usable(dir_, campaign, use);  // another process was quicker
     else

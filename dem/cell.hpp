@@ -63,7 +63,7 @@ class Cell {
     for (std::size_t c = 0; c < 3; ++c) {
       const double length = edges_(c, c);
       x[c] -= length * std::floor(x[c] / length);
-      if (x[c] >= length) x[c] = 0;  // a tiny negative number rounds up to L
+      if (x[c] < 0 || x[c] >= length) x[c] = 0;  // rounding at a face
     }
     return x;
   }

@@ -27,7 +27,7 @@ class ContactHessian {
   /// product = H displacement.
   void apply(const Field& displacement, Field& product) const;
 
-  /// Symmetric blocks of the diagonal of the springs alone (without prestress, so never negative): xx, yy,
+  /// Symmetric blocks of the diagonal without what softens it (so never negative): xx, yy,
   /// zz, yz, xz, xy for each grain.
   const std::vector<Sym6>& diagonal() const { return diagonal_; }
 

@@ -58,11 +58,13 @@ struct LegState {
   Mat3 start_edges;                 ///< H where it began, mm
   double kinetic_at_start = 0;      ///< for relax, ug mm^2/us^2
   double eps_vol = 0, eps_dev = 0;  ///< of the path where it began
+  StrainTensor axis{};              ///< of the last leg before it that sheared; zero: none
   ControlState control;             ///< of a controlled leg
 
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {
-    archive(self.step, self.start_edges, self.kinetic_at_start, self.eps_vol, self.eps_dev, self.control);
+    archive(self.step, self.start_edges, self.kinetic_at_start, self.eps_vol, self.eps_dev, self.axis,
+            self.control);
   }
 };
 

@@ -76,9 +76,9 @@ void Dynamics::step(const Mat3& edges, const Mat3& gradient) {
 }
 
 double Dynamics::advance_grains(const Cell& next) {
-  const Stride stride{dt_, next.deformation_from(cell_.edges()), cell_.gradient(), material_.gamma_b,
-                      next.tilted() || cell_.tilted()};
   const ListReach list = neighbours_.reach(next);
+  const Stride stride{dt_, next.deformation_from(cell_.edges()), cell_.gradient(), material_.gamma_b,
+                      next.tilted() || cell_.tilted() || !list.deformation.is_diagonal()};
   if (!team_) return advance(stride, list, grains_);
   std::vector<double> excess(shares_.size());
   team_->run([&](int t) {

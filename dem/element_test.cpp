@@ -138,8 +138,7 @@ void ElementTest::plan_again() {
   Waypoint from(place_.nu_start);
   from.move({third, third, third}, {});
   from.eps_dev = place_.leg.eps_dev;
-  for (std::size_t i = 0; i < place_.stage; ++i)
-    if (const auto& axis = stages_[i].leg.axis) from.axis = axis;
+  if (place_.leg.axis != StrainTensor{}) from.axis = place_.leg.axis;
   stage = stage_from(scene_, *stage.segment, from, longest_);
   if (place_.leg.step == 0) check_width({stage}, dynamics_.state(), scene_);
 }
@@ -147,7 +146,16 @@ void ElementTest::plan_again() {
 /// Takes the stage to its end, or to where the run is told to stop.
 void ElementTest::walk() {
   const std::uint64_t announced = stages_[place_.stage].stepping.steps;
-  if (stages_[place_.stage].segment && scene_.path.by_stress()) plan_again();
+  if (stages_[place_.stage].segment && scene_.path.by_stress()) {
+    try {
+      plan_again();
+    } catch (const Error& error) {
+      if (place_.leg.step > 0) throw;
+      cut_short_ = std::string(error.what()) + "; the test ends there";  // where the servo has led
+      place_.stage = stages_.size();
+      return;
+    }
+  }
   const Stage& stage = stages_[place_.stage];
   watch_.enter(stage.name, announced, place_.leg.step);
   recorder_.enter(dynamics_, stage, place_.leg);
@@ -170,6 +178,7 @@ void ElementTest::leave_leg() {
   LegState next;
   next.eps_vol = leg.eps_vol[1];
   next.eps_dev = leg.eps_dev[1];
+  next.axis = leg.axis.value_or(place_.leg.axis);
   if (leg.controlled()) {
     const StrainTensor strain = leg_strain(dynamics_, place_.leg);
     next.eps_vol = leg.eps_vol[0] + strain[0] + strain[1] + strain[2];
@@ -197,6 +206,7 @@ void ElementTest::write_checkpoint() const {
 }
 
 RunSummary ElementTest::run() {
+  remove_half_written(out_dir_);
   write_file(out_dir_ / "scene.json", scene_.to_json(out_dir_).dump(2) + "\n");
   while (place_.stage < stages_.size() && !watch_.stopped()) {
     if (stages_[place_.stage].segment && !recorder_.begun()) begin_path();

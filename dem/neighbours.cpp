@@ -113,7 +113,7 @@ bool Neighbours::outer_covers(const Grains& grains, const Cell& cell) {
 void Neighbours::sort_and_list(Grains& grains, Cell& cell) {
   cell.reduce();
   const double narrowest = cell.narrowest(), widest_grain = 2 * largest_radius_;
-  outer_skin_ = std::min(outer_skin * unit_, narrowest - widest_grain);
+  outer_skin_ = std::min(narrowest - widest_grain, outer_skin * unit_);  // in this order not a number stays
   if (!(outer_skin_ >= least_skin * unit_))
     throw Error("the box is " + to_text(narrowest) +
                 " mm wide, too narrow for its largest grain of diameter " + to_text(widest_grain) +

@@ -71,7 +71,9 @@ void Recorder::after_step(const Dynamics& dynamics, const Stage& stage, const Le
 /// Rows and snapshots wait until the stresses are on target, as the driven axes do.
 void Recorder::after_controlled_step(const Dynamics& dynamics, const Stage& stage, const LegState& leg) {
   if (!leg.control.looked || !leg.control.on_target) return;
-  const auto due = static_cast<std::uint64_t>(leg.control.progress * static_cast<double>(stage.row_count));
+  // Below 0 where a servo on its way to a first target shears the other way.
+  const double share = std::clamp(leg.control.progress, 0.0, 1.0);
+  const auto due = static_cast<std::uint64_t>(share * static_cast<double>(stage.row_count));
   for (; rows_done_ < std::min(due, stage.row_count); ++rows_done_)
     write_row(dynamics, stage, eps_dev(dynamics, stage, leg));
   const auto reached = std::remove_if(wanted_.begin(), wanted_.end(), [&](std::uint64_t i) {
@@ -86,7 +88,9 @@ void Recorder::after_controlled_step(const Dynamics& dynamics, const Stage& stag
 bool Recorder::passed(const SnapshotRequest& wanted, const Dynamics& dynamics, const Stage& stage,
                       const LegState& leg) const {
   const auto between = [](double value, double begin, double now) {
-    return (value - begin) * (now - value) >= 0;
+    constexpr double slack = 1e-9;  // the end itself, up to rounding, as where scenes are checked
+    return (value - begin) * (now - value) >= 0 || std::abs(now - value) <= slack ||
+           std::abs(value - begin) <= slack;
   };
   if (wanted.eps_dev) return between(*wanted.eps_dev, stage.leg.eps_dev[0], eps_dev(dynamics, stage, leg));
   if (!wanted.nu) return false;

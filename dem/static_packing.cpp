@@ -53,8 +53,8 @@ void StaticPacking::find_contacts() {
 Balance StaticPacking::balance() const {
   Balance balance;
   balance.largest_net_force = std::sqrt(largest_square(grains_.force));
-  balance.jammed = backbone_.grains() > 0;
   balance.mean_force = backbone_.mean_force();
+  balance.jammed = backbone_.grains() > 0 && balance.mean_force > 0;  // contacts may just touch
   balance.residual =
       balance.jammed ? balance.largest_net_force / balance.mean_force : network_.largest_overlap / unit_;
   return balance;

@@ -26,9 +26,9 @@ struct Balance {
   bool jammed = false;  ///< there is a backbone
 };
 
-/// The places may be changed through grains(), which is also where a minimiser keeps what it must not lose
-/// when the grains are sorted: `motion` is its direction and `half` a field of its own. Forces are elastic:
-/// the box is at rest, nothing is damped.
+/// Places change by move() and deform() alone, which keep the list right. grains() is where a minimiser keeps
+/// what it must not lose when the grains are sorted: `motion` is its direction and `half` a field of its own.
+/// Forces are elastic: the box is at rest, nothing is damped.
 class StaticPacking {
  public:
   /// Takes places and radii of `state`; its velocities are forgotten.

@@ -50,7 +50,7 @@ class ThreadPool {
   }
 
   void serve(int t) {
-    for (int turn = 0;; ++turn) {
+    for (unsigned turn = 0;; ++turn) {
       wait_while(turn_, turn);
       if (job_ == nullptr) return;
       job_(function_, t);
@@ -58,7 +58,8 @@ class ThreadPool {
     }
   }
 
-  static void wait_while(const std::atomic<int>& what, int value) {
+  template <class T>
+  static void wait_while(const std::atomic<T>& what, T value) {
     constexpr int looks = 4000;  // some 50 us
     for (int n = 0; n < looks; ++n) {
       if (what.load(std::memory_order_acquire) != value) return;
@@ -71,8 +72,8 @@ class ThreadPool {
 
   Job job_ = nullptr;
   void* function_ = nullptr;
-  alignas(64) std::atomic<int> turn_{0};  ///< how often work was given out; it may wrap around
-  alignas(64) std::atomic<int> left_{0};  ///< how many of the others are still at it
+  alignas(64) std::atomic<unsigned> turn_{0};  ///< how often work was given out; it may wrap around
+  alignas(64) std::atomic<int> left_{0};       ///< how many of the others are still at it
   std::vector<std::thread> others_;
 };
 

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include "grainlaw/element/error.hpp"
 
@@ -69,6 +70,17 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
                       !std::filesystem::is_directory(end, code);
   const int failure = device ? write_to(end, 0, text) : replace(end, text);
   if (failure != 0) throw Error::cannot_write(file.string(), std::strerror(failure));
+}
+
+void remove_half_written(const std::filesystem::path& dir) {
+  std::vector<std::filesystem::path> half_written;
+  for (const auto& entry : std::filesystem::directory_iterator(dir)) {
+    const std::string kind = entry.path().extension().string();
+    const bool numbered = kind.starts_with(".part") && kind.size() > 5 &&
+                          kind.find_first_not_of("0123456789", 5) == std::string::npos;
+    if (numbered && entry.is_regular_file()) half_written.push_back(entry.path());
+  }
+  for (const auto& file : half_written) std::filesystem::remove(file);
 }
 
 std::string read_file(const std::filesystem::path& file) {

@@ -14,11 +14,12 @@ constexpr std::size_t most_segments = 1'000'000;
 constexpr double fastest = 1e6;                // 1/us
 constexpr double default_rate = 2.839e-5;      // 28.39 /s, the thesis's D2 (section 4.3)
 constexpr double default_rate_iso = 5.0e-6;    // 5 /s, near the thesis's slow isotropic cycle (Fig. 2.2)
+constexpr double longest_duration = 1e15;      // us: beyond it steps cannot be counted
 constexpr double longest_relaxation = 2000.0;  // us, 24 background relaxation times
 constexpr double largest_stress =
     1000;  // over k*, and of fabric: far beyond any law, so that nothing overflows
 const Range any_strain = between(-100, 100), any_rate = above_up_to(0, fastest),
-            any_duration = above_up_to(0, 1e15);
+            any_duration = above_up_to(0, longest_duration);
 constexpr double servo_over_rate = 10;  // how much faster than the segment a servo may strain an axis
 constexpr std::array all_modes{
     Mode::iso,    Mode::uni,        Mode::d2,      Mode::d3,       Mode::components,
@@ -463,7 +464,19 @@ void Waypoint::move(const StrainTensor& strain, const std::optional<StrainTensor
   nu = nu_start * std::exp(eps_vol);
 }
 
-Leg Path::leg(std::size_t i, const Waypoint& from) const {
+namespace {
+
+/// The axis of a mode whose direction is known although its amount is not.
+std::optional<StrainTensor> axis_of_mode(const Segment& segment) {
+  const Mode mode = segment.mode == Mode::constant_p ? segment.shear : segment.mode;
+  if (mode == Mode::d2 || mode == Mode::biaxial) return axis_d2;
+  if (mode == Mode::uni || mode == Mode::d3 || mode == Mode::triaxial) return axis_uni;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Leg Path::leg(std::size_t i, const Waypoint& from, bool certain) const {
   const Segment& segment = segments.at(i);
   Leg leg{};
   leg.mode = segment.mode;
@@ -475,13 +488,21 @@ Leg Path::leg(std::size_t i, const Waypoint& from) const {
   if (segment.mode == Mode::biaxial || segment.mode == Mode::triaxial) leg.to_eps_dev = segment.to_eps_dev;
   const double size = largest(leg.strain);
   const bool waits = !leg.drives() && leg.control.by_stress();
-  if (segment.mode != Mode::relax && !waits && !(size > 1e-14))
+  if (certain && segment.mode != Mode::relax && !waits && !(size > 1e-14))
     throw Error(file, segment.key, "has nothing to do: its target is the state already reached");
   leg.duration = segment.duration ? *segment.duration : waits ? leg.control.servo.wait : size / *segment.rate;
-  if (has_deviator(leg.strain)) leg.axis = axis_of(leg.mode, leg.strain, from.axis);
+  if (!(leg.duration <= longest_duration))
+    throw Error(file, segment.key,
+                "takes " + to_text(leg.duration) + " us; must be at most " + to_text(longest_duration) +
+                    ": its rate is too low");
+  if (has_deviator(leg.strain))
+    leg.axis = axis_of(leg.mode, leg.strain, from.axis);
+  else if (leg.control.by_stress())
+    leg.axis = from.axis;  // what its servo shears counts along the axis before it
+  if (!certain && !leg.axis) leg.axis = axis_of_mode(segment);
   Waypoint to = from;
   to.move(leg.strain, leg.axis);
-  if (!(to.nu > 0 && to.nu < 1) && !leg.control.by_stress())
+  if (certain && !(to.nu > 0 && to.nu < 1) && !leg.control.by_stress())
     throw Error(file, segment.key,
                 "takes the volume fraction to " + to_text(to.nu) + "; it must stay > 0 and < 1");
   leg.eps_vol[0] = from.eps_vol;
@@ -507,13 +528,7 @@ std::vector<Leg> Path::nominal_legs(double nu) const {
   bool certain = true;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     certain = certain && !segments[i].control.by_stress();
-    Leg leg{};
-    try {
-      leg = this->leg(i, at);
-    } catch (const Error&) {
-      if (certain) throw;
-      leg.mode = segments[i].mode;  // whether its target is reached is known only after the servo
-    }
+    Leg leg = this->leg(i, at, certain);
     at.move(leg.strain, leg.axis);
     legs.push_back(std::move(leg));
   }

@@ -111,7 +111,9 @@ struct Path {
   /// control, whose strain only the grains know.
   std::vector<Leg> legs(double nu) const;
   /// Segment i as a leg from there. Throws Error as legs() does, but takes stress control.
-  Leg leg(std::size_t i, const Waypoint& from) const;
+  /// Unless `certain`, `from` leaves out what a servo strained before: then nothing is refused that depends
+  /// on where the segment begins.
+  Leg leg(std::size_t i, const Waypoint& from, bool certain = true) const;
   /// All legs as if servos added no strain, for estimates and signs: a leg that would then have nothing to do
   /// is empty. Throws Error as legs() does, up to the first segment under stress control.
   std::vector<Leg> nominal_legs(double nu) const;

@@ -106,7 +106,8 @@ TEST(Bench, TwinsStartFromSnapshotsOfTheirOwn) {
   bench.twins = 3;
   std::set<std::string> starts;
   const auto scenes = scenes_of(plan(bench));
-  for (const std::string& name : sweeps(bench).front().variants.front().records.front())
+  const std::vector<Sweep> all = sweeps(bench);
+  for (const std::string& name : all.front().variants.front().records.front())
     starts.insert(scenes.at(name).at("preparation").at("snapshot").get<std::string>());
   EXPECT_EQ(starts.size(), 3u);
 }
