@@ -1,8 +1,11 @@
 // The parts of time_to_result that need the engine: a packing as LAMMPS data, and what LAMMPS's dumps of it
 // hold, measured as we measure our own. Usage:
-//   grainlaw_bench_time_to_result data SNAPSHOTS.h5 NU FILE   writes FILE, prints steps, dt and the frame's
-//   segment grainlaw_bench_time_to_result rows SNAPSHOTS.h5 NU DUMP   prints the rows of record.csv for that
-//   dump
+//
+//   grainlaw_bench_time_to_result data SNAPSHOTS.h5 NU FILE
+//     writes FILE, prints steps, dt and the frame's segment
+//   grainlaw_bench_time_to_result rows SNAPSHOTS.h5 NU DUMP
+//     prints the rows of record.csv for that dump
+//
 // The flow is D2 at the thesis's rate to eps_dev = 0.4 in 200 rows, with a step of t_c/50.
 #include <algorithm>
 #include <array>
