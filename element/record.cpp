@@ -32,13 +32,13 @@ struct ColumnRange {
 /// before parting.
 const std::vector<ColumnRange>& column_ranges() {
   static const std::vector<ColumnRange> ranges{
-      {"nu", inside(0, 1)},           {"P", between(-1e3, 1e3)},   {"sigma_dev", between(-1e3, 1e3)},
-      {"F_v", at_least(0)},           {"C", at_least(0)},          {"C_star", at_least(0)},
-      {"f_NR", between(0, 1)},        {"phi_J", inside(0, 1)},     {"Ek_over_Ep", at_least(0)},
-      {"C_r", at_least(0)},           {"C_star_p", at_least(0)},   {"phi_r", between(0, 1)},
-      {"E_k", at_least(0)},           {"E_p", at_least(0)},        {"overlap", at_least(0)},
-      {"xi_x", between(0, 1)},        {"xi_y", between(0, 1)},     {"xi_z", between(0, 1)},
-      {"percolating", between(0, 3)}, {"unbalanced", at_least(0)}, {"D2_min", at_least(0)}};
+      {"nu", inside(0, 1)},        {"P", between(-1e3, 1e3)}, {"sigma_dev", between(-1e3, 1e3)},
+      {"F_v", at_least(0)},        {"C", at_least(0)},        {"C_star", at_least(0)},
+      {"f_NR", between(0, 1)},     {"phi_J", inside(0, 1)},   {"Ek_over_Ep", at_least(0)},
+      {"C_r", at_least(0)},        {"phi_r", between(0, 1)},  {"E_k", at_least(0)},
+      {"E_p", at_least(0)},        {"overlap", at_least(0)},  {"xi_x", between(0, 1)},
+      {"xi_y", between(0, 1)},     {"xi_z", between(0, 1)},   {"percolating", between(0, 3)},
+      {"unbalanced", at_least(0)}, {"D2_min", at_least(0)}};
   return ranges;
 }
 
