@@ -143,21 +143,9 @@ Energies Dynamics::energies() const {
 }
 
 State Dynamics::state() const {
-  State state;
-  state.box = cell_.edges();
+  State state = grains_.state(cell_, velocities());
   state.time_us = time_;
   state.step = steps_;
-  state.position.resize(count());
-  state.velocity.resize(count());
-  state.radius.resize(count());
-  const std::vector<Quad> velocity = velocities();
-  for (std::size_t i = 0; i < count(); ++i) {
-    const std::uint32_t original = grains_.id[i];
-    const Quad &x = grains_.place[i], &v = velocity[i];
-    state.position[original] = cell_.wrap({x.x, x.y, x.z});
-    state.velocity[original] = {v.x, v.y, v.z};
-    state.radius[original] = x.w;
-  }
   return state;
 }
 

@@ -45,6 +45,21 @@ void permute(std::vector<T>& list, const std::vector<std::uint32_t>& order) {
 }
 }  // namespace
 
+State Grains::state(const Cell& cell, const std::vector<Quad>& velocity) const {
+  State state;
+  state.box = cell.edges();
+  state.position.resize(count());
+  state.velocity.resize(count());
+  state.radius.resize(count());
+  for (std::size_t i = 0; i < count(); ++i) {
+    const Quad &x = place[i], &v = velocity[i];
+    state.position[id[i]] = cell.wrap({x.x, x.y, x.z});
+    state.velocity[id[i]] = {v.x, v.y, v.z};
+    state.radius[id[i]] = x.w;
+  }
+  return state;
+}
+
 void Grains::reorder(const std::vector<std::uint32_t>& order) {
   permute(place, order);
   permute(motion, order);

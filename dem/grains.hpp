@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "grainlaw/dem/cell.hpp"
 #include "grainlaw/dem/state.hpp"
 #include "grainlaw/dem/vec.hpp"
 
@@ -27,6 +28,9 @@ struct Grains {
   std::size_t count() const { return place.size(); }
   double largest_radius() const;
   double smallest_radius() const;
+  /// What is exchanged, in the order of the State they came from; `velocity` in the order here. Positions are
+  /// wrapped into the box; time and step are left at 0.
+  State state(const Cell& cell, const std::vector<Quad>& velocity) const;
   /// Grain `order[i]` becomes grain i.
   void reorder(const std::vector<std::uint32_t>& order);
 

@@ -2,23 +2,11 @@
 
 #include <limits>
 
+#include "grainlaw/dem/dyad.hpp"
+
 namespace grainlaw::dem {
 
 namespace {
-
-/// sum += factor a (x) b, the symmetric part, for parallel a and b all of it.
-void add(Sym6& sum, double factor, const Vec3& a) {
-  sum[0] += factor * a[0] * a[0];
-  sum[1] += factor * a[1] * a[1];
-  sum[2] += factor * a[2] * a[2];
-  sum[3] += factor * a[1] * a[2];
-  sum[4] += factor * a[0] * a[2];
-  sum[5] += factor * a[0] * a[1];
-}
-
-void scale(Sym6& q, double factor) {
-  for (double& component : q) component *= factor;
-}
 
 double kinetic_energy(const Grains& grains, const std::vector<Quad>& velocity, std::size_t i) {
   const Vec3 v{velocity[i].x, velocity[i].y, velocity[i].z};
@@ -53,9 +41,9 @@ Sym6 static_stress(const LinearContact& law, const Grains& grains, const std::ve
                    const Cell& cell, const Pairs& pairs) {
   Sym6 stress{};
   for_each_contact(pairs, grains, cell, [&](const Contact& c) {
-    add(stress, law.force(c.overlap, closing_speed(c, velocity, cell)) / c.distance, c.branch);
+    add_dyad(stress, law.force(c.overlap, closing_speed(c, velocity, cell)) / c.distance, c.branch);
   });
-  scale(stress, 1 / cell.volume());
+  stress = times(1 / cell.volume(), stress);
   return stress;
 }
 
@@ -75,22 +63,22 @@ Measurement measure(const LinearContact& law, const Grains& grains, const std::v
   for (std::size_t i = 0; i < grains.count(); ++i) {
     solid += sphere_volume(grains.place[i].w);
     m.kinetic += kinetic_energy(grains, velocity, i);
-    add(m.kinetic_stress, 1 / grains.acceleration[i].w, {velocity[i].x, velocity[i].y, velocity[i].z});
+    add_dyad(m.kinetic_stress, 1 / grains.acceleration[i].w, {velocity[i].x, velocity[i].y, velocity[i].z});
   }
   for_each_contact(pairs, grains, cell, [&](const Contact& c) {
     ++contacts_of[c.i];
     ++contacts_of[c.j];
     ++m.contacts;
-    add(m.stress, law.force(c.overlap, closing_speed(c, velocity, cell)) / c.distance, c.branch);
+    add_dyad(m.stress, law.force(c.overlap, closing_speed(c, velocity, cell)) / c.distance, c.branch);
     const double volumes = sphere_volume(grains.place[c.i].w) + sphere_volume(grains.place[c.j].w);
-    add(m.fabric, volumes / (c.distance * c.distance), c.branch);
+    add_dyad(m.fabric, volumes / (c.distance * c.distance), c.branch);
     m.elastic += law.energy(c.overlap);
   });
   const double per_volume = 1 / cell.volume();
   m.nu = solid * per_volume;
-  scale(m.stress, per_volume);
-  scale(m.kinetic_stress, per_volume);
-  scale(m.fabric, per_volume);
+  m.stress = times(per_volume, m.stress);
+  m.kinetic_stress = times(per_volume, m.kinetic_stress);
+  m.fabric = times(per_volume, m.fabric);
   count_contacts(contacts_of, m);
   return m;
 }

@@ -65,18 +65,9 @@ Measurement StaticPacking::measure() const {
 }
 
 State StaticPacking::state() const {
-  State state;
-  state.box = cell_.edges();
+  State state = grains_.state(cell_, std::vector<Quad>(count()));
   state.time_us = time_;
   state.step = step_;
-  state.position.resize(count());
-  state.velocity.resize(count());
-  state.radius.resize(count());
-  for (std::size_t i = 0; i < count(); ++i) {
-    const Quad& x = grains_.place[i];
-    state.position[grains_.id[i]] = cell_.wrap({x.x, x.y, x.z});
-    state.radius[grains_.id[i]] = x.w;
-  }
   return state;
 }
 

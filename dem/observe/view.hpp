@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "grainlaw/dem/dyad.hpp"
 #include "grainlaw/dem/dynamics.hpp"
 #include "grainlaw/dem/measure.hpp"
 #include "grainlaw/element/material.hpp"
@@ -48,20 +49,5 @@ struct View {
   const Grains& grains() const { return dynamics.grains(); }
   const Cell& cell() const { return dynamics.cell(); }
 };
-
-/// sum += factor a (x) a
-inline void add_dyad(Sym6& sum, double factor, const Vec3& a) {
-  sum[0] += factor * a[0] * a[0];
-  sum[1] += factor * a[1] * a[1];
-  sum[2] += factor * a[2] * a[2];
-  sum[3] += factor * a[1] * a[2];
-  sum[4] += factor * a[0] * a[2];
-  sum[5] += factor * a[0] * a[1];
-}
-
-inline Sym6 times(double factor, Sym6 q) {
-  for (double& component : q) component *= factor;
-  return q;
-}
 
 }  // namespace grainlaw::dem::observe

@@ -46,15 +46,8 @@ TEST_F(TrajectoryInvariance, ContactsOpenAndClose) {
 }
 
 TEST_F(TrajectoryInvariance, Permutation) {
-  std::vector<std::size_t> order(start.count());
-  std::iota(order.begin(), order.end(), 0u);
-  Random(2).shuffle(order);
-  State other = start;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    other.position[i] = start.position[order[i]];
-    other.velocity[i] = start.velocity[order[i]];
-    other.radius[i] = start.radius[order[i]];
-  }
+  const std::vector<std::size_t> order = test::shuffled(start.count(), 2);
+  const State other = test::permuted(start, order);
   expect_same(
       followed(other, flow), [&](std::size_t i) { return order[i]; }, [](const Vec3& x) { return x; });
 }

@@ -274,15 +274,7 @@ class ObserversInvariance : public testing::Test {
 };
 
 TEST_F(ObserversInvariance, Permutation) {
-  std::vector<std::size_t> order(state.count());
-  std::iota(order.begin(), order.end(), 0u);
-  Random(1).shuffle(order);
-  State other = state;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    other.position[i] = state.position[order[i]];
-    other.velocity[i] = state.velocity[order[i]];
-    other.radius[i] = state.radius[order[i]];
-  }
+  const State other = test::permuted(state, test::shuffled(state.count(), 1));
   expect_equal(see(m, other), {});
 }
 

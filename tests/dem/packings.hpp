@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <tuple>
 #include <vector>
 
@@ -55,6 +56,25 @@ inline Mat3 deformation(const Mat3& gradient, double t) {
     sum = sum + term;
   }
   return sum;
+}
+
+/// 0 ... count - 1 in random order.
+inline std::vector<std::size_t> shuffled(std::size_t count, std::uint64_t seed) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  Random(seed).shuffle(order);
+  return order;
+}
+
+/// Grain `order[i]` becomes grain i.
+inline State permuted(const State& state, const std::vector<std::size_t>& order) {
+  State other = state;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    other.position[i] = state.position[order[i]];
+    other.velocity[i] = state.velocity[order[i]];
+    other.radius[i] = state.radius[order[i]];
+  }
+  return other;
 }
 
 /// Overlap and the two grains, of every contact through every image, sorted.
