@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 
 #include "grainlaw/element/file.hpp"
@@ -79,6 +80,7 @@ Outcome Running::wait() {
 }
 
 void Program::SetUp() {
+  ::unsetenv("GRAINLAW_HOME");  // a program that the entry script did not start, even where that runs the tests
   folder = fs::temp_directory_path() / ("grainlaw-apps-" + std::to_string(::getpid()));
   fs::remove_all(folder);
   fs::create_directories(folder);

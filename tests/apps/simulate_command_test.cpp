@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <thread>
 
 #include "grainlaw/dem/snapshot.hpp"
@@ -83,6 +84,14 @@ TEST_F(Simulate, InterruptedItSaysHowToGoOn) {
   EXPECT_TRUE(eventually([&] { return fs::exists(folder / "out/x.part/checkpoint.old.bin"); }));
   again.send(SIGTERM);
   EXPECT_EQ(again.wait().status, 130);
+}
+
+TEST_F(Simulate, InterruptedUnderTheEntryScriptItNamesTheScript) {
+  ::setenv("GRAINLAW_HOME", "/elsewhere", 1);
+  const auto running = start_long();
+  running->send(SIGINT);
+  EXPECT_EQ(running->wait().err,
+            "stopped; go on with: /elsewhere/grainlaw simulate long.json -o out/x --resume\n");
 }
 
 TEST_F(Simulate, KilledAtAnyMomentItGoesOnBitForBit) {
