@@ -38,7 +38,7 @@ struct Bench {
 
 /// The engine's settings of one run. Defaults are those of a scene.
 struct BenchSetting {
-  int steps = 10;      ///< per smallest contact duration, on the path
+  int steps = 5;       ///< per smallest contact duration, on the path
   int gas_steps = 20;  ///< the same, during preparation
   double rate = 1;     ///< over the default rate of the mode
   std::int64_t count = 0;

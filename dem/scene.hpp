@@ -62,7 +62,7 @@ struct SnapshotRequest {
 struct Measure {
   std::int64_t rows = 100;  ///< per segment, evenly spaced in its strain
   std::vector<SnapshotRequest> snapshots;
-  double time_step = 0.1;            ///< over the smallest contact duration
+  double time_step = 0.2;            ///< over the smallest contact duration
   double time_step_gas = 0.05;       ///< the same, during preparation
   std::vector<std::string> observe;  ///< beside the standard columns; of observe::names(), in their order
 

@@ -20,9 +20,11 @@
 
 #include "grainlaw/dem/drive.hpp"
 #include "grainlaw/dem/dynamics.hpp"
+#include "grainlaw/dem/lammps_data.hpp"
 #include "grainlaw/dem/row_writer.hpp"
 #include "grainlaw/dem/snapshot.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/file.hpp"
 
 namespace {
 
@@ -59,26 +61,8 @@ dem::Frame packing(const char* file, const char* nu) {
 }
 
 void write_data(const dem::Frame& frame, const Material& material, const char* file) {
-  const dem::State& state = frame.state;
-  std::ofstream out(file);
-  out.precision(17);
-  out << "packing of grainlaw; mm, us, ug\n\n" << state.count() << " atoms\n1 atom types\n";
-  for (std::size_t c = 0; c < 3; ++c)
-    out << "0 " << state.box(c, c) << ' ' << "xyz"[c] << "lo "
-        << "xyz"[c] << "hi\n";
-  out << "\nAtoms # sphere\n\n";
-  for (std::size_t i = 0; i < state.count(); ++i) {
-    const auto& x = state.position[i];
-    out << i + 1 << " 1 " << 2 * state.radius[i] << ' ' << material.rho << ' ' << x[0] << ' ' << x[1] << ' '
-        << x[2] << '\n';
-  }
-  out << "\nVelocities\n\n";
-  for (std::size_t i = 0; i < state.count(); ++i) {
-    const auto& v = state.velocity[i];
-    out << i + 1 << ' ' << v[0] << ' ' << v[1] << ' ' << v[2] << " 0 0 0\n";
-  }
-  if (!out.flush()) throw Error(file, "", "cannot be written");
-  const dem::StepPlan plan = steps_of(state, material);
+  write_file(file, dem::lammps_data(frame.state, material));
+  const dem::StepPlan plan = steps_of(frame.state, material);
   std::printf("%llu %.17g %llu\n", static_cast<unsigned long long>(plan.steps), plan.dt,
               static_cast<unsigned long long>(frame.observables.segment));
 }
@@ -125,7 +109,7 @@ void print_rows(dem::State state, const Material& material, const char* file) {
     dem::Dynamics dynamics(material, state);
     dynamics.start(plan.dt, {rate, -rate, 0});
     const double progress = static_cast<double>(state.step) / static_cast<double>(plan.steps);
-    writer.append(dynamics.measure(), 0, progress * eps_dev, static_cast<double>(state.step) * plan.dt);
+    writer.append(dynamics, 0, progress * eps_dev, static_cast<double>(state.step) * plan.dt);
   }
   std::fputs(writer.record().to_csv().c_str(), stdout);
 }

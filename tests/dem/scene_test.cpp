@@ -46,7 +46,7 @@ TEST(Scene, DefaultsAreThoseOfTheDocumentation) {
       json["preparation"].dump(),
       R"({"count":1000,"seed":1,"nu_gas":0.3,"speed":0.02,"nu":0.64,"rate":0.0002,"relax":{"tolerance":1e-06,"duration":2000.0}})");
   EXPECT_EQ(json["measure"].dump(),
-            R"({"rows":100,"snapshots":[],"time_step":0.1,"time_step_gas":0.05,"observe":[]})");
+            R"({"rows":100,"snapshots":[],"time_step":0.2,"time_step_gas":0.05,"observe":[]})");
   EXPECT_EQ(json["path"]["segments"].size(), 1u);
 }
 
