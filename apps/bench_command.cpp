@@ -150,7 +150,7 @@ std::string value_text(calibrate::Knob knob, double value) {
     case calibrate::Knob::time_step:
       return fmt::format("time step t_c/{}", value);
     case calibrate::Knob::rate:
-      return fmt::format("rate x {}", value);
+      return value > 0 ? fmt::format("rate x {}", value) : std::string("quasistatic");
     case calibrate::Knob::gas_step:
       return fmt::format("time step of the gas t_c/{}", value);
     case calibrate::Knob::count:

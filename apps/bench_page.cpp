@@ -37,14 +37,14 @@ std::string label_of(Knob knob) {
   return "";
 }
 
-/// "t_c/10", "× 0.3", "1000"
+/// "t_c/10", "× 0.3", "quasistatic", "1000"
 std::string value_of(const BenchError& line) {
   switch (line.knob) {
     case Knob::time_step:
     case Knob::gas_step:
       return "t_c/" + number(line.value, 4);
     case Knob::rate:
-      return "× " + number(line.value, 4);
+      return line.value > 0 ? "× " + number(line.value, 4) : "quasistatic";
     case Knob::count:
       return number(line.value, 7);
   }

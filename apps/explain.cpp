@@ -53,9 +53,12 @@ std::string stages(const SceneCost& cost) {
   for (const auto& [stage, range, seconds] : cost.stages) {
     const std::string nu = range[0] == range[1] ? fmt::format("{:.4g}", range[0])
                                                 : fmt::format("{:.4g} to {:.4g}", range[0], range[1]);
-    text +=
-        fmt::format("  {:<24} {:<16} {:>9} {:>12.4g}   {}{}\n", stage.name, nu, stage.stepping.steps,
-                    stage.stepping.dt, stage.leg.mode == Mode::relax ? "at most " : "", short_time(seconds));
+    text += fmt::format("  {:<24} {:<16} {:>9} {:>12.4g}   {}{}\n", stage.name, nu, stage.stepping.steps,
+                        stage.leg.minimises() ? 0 : stage.stepping.dt,
+                        stage.leg.minimises()           ? "about "
+                        : stage.leg.mode == Mode::relax ? "at most "
+                                                        : "",
+                        short_time(seconds));
   }
   return text + fmt::format("  a step on the path: {}, of it contact forces {}, motion and lists {}\n\n",
                             short_time(cost.force_seconds + cost.motion_seconds),

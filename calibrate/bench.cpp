@@ -6,7 +6,9 @@
 #include <map>
 #include <set>
 
+#include "grainlaw/dem/quasistatic.hpp"
 #include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/stage.hpp"
 
 namespace grainlaw::calibrate {
 
@@ -41,7 +43,7 @@ std::vector<double> values_of(Knob knob, std::int64_t count) {
     case Knob::time_step:
       return {5, 10, 20, 50, 200};
     case Knob::rate:
-      return {30, 10, 3, 1, 0.3, 0.1};
+      return {30, 10, 3, 1, 0.3, 0.1, 0};
     case Knob::gas_step:
       return {5, 10, 20, 50, 100};
     case Knob::count:
@@ -115,7 +117,10 @@ Json test_scene(const Bench& bench, BenchTest test, const BenchSetting& setting,
   const bool is_d2 = test == BenchTest::d2;
   Json segment{{"mode", is_d2 ? "d2" : "iso"}};
   segment["controls"] = is_d2 ? Json{{"eps_dev", bench.eps_dev}} : Json{{"nu", bench.nu_end}};
-  segment["rate"] = setting.rate * (is_d2 ? d2_rate : iso_rate);
+  if (setting.rate > 0)
+    segment["rate"] = setting.rate * (is_d2 ? d2_rate : iso_rate);
+  else
+    segment["profile"] = "quasistatic";
   const std::string snapshot =
       "../" + packing_name(setting, seed) + "/" + (twin == 0 ? "snapshots.h5" : twin_file(twin));
   return {{"preparation", {{"snapshot", snapshot}}},
@@ -128,13 +133,18 @@ double estimate(const dem::Scene& scene, const BenchSetting& setting) {
   const double contact = scene.material.contact_duration(scene.material.r_min());
   const auto* packing = std::get_if<dem::NewPacking>(&scene.preparation);
   double steps = 0;
+  double passes = 0;
   for (const Leg& leg : scene.legs(packing != nullptr ? packing->nu : Bench::nu_start))
-    steps += leg.duration * (leg.mode == Mode::relax ? relaxation_share : 1.0) / scene.measure.time_step;
+    if (leg.minimises())
+      passes += static_cast<double>(dem::plan_increments(leg, Bench::rows).steps *
+                                    dem::Stage::passes_per_increment);
+    else
+      steps += leg.duration * (leg.mode == Mode::relax ? relaxation_share : 1.0) / scene.measure.time_step;
   if (packing != nullptr)
     steps += (std::log(packing->nu / packing->nu_gas) / 3 / packing->rate +
               relaxation_share * packing->relax.duration) /
              scene.measure.time_step_gas;
-  return steps / contact * static_cast<double>(setting.count);
+  return (steps / contact + passes) * static_cast<double>(setting.count);
 }
 
 /// Adds runs, each once, after the packing they start from.

@@ -40,7 +40,7 @@ struct Bench {
 struct BenchSetting {
   int steps = 5;       ///< per smallest contact duration, on the path
   int gas_steps = 20;  ///< the same, during preparation
-  double rate = 1;     ///< over the default rate of the mode
+  double rate = 1;     ///< over the default rate of the mode; 0: quasistatic
   std::int64_t count = 0;
 
   bool operator==(const BenchSetting&) const = default;

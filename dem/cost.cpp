@@ -123,10 +123,13 @@ struct TrialCost {
 
 class Trial {
  public:
-  /// At the mean rate of `stage` and with its step.
+  /// At the mean rate of `stage` and with its step; where that minimises, with a step of the default.
   Trial(const Material& material, const State& state, const Stage& stage)
       : material_(material),
-        dt_(stage.stepping.dt),
+        dt_(stage.leg.minimises()
+                ? time_step(material, *std::min_element(state.radius.begin(), state.radius.end()),
+                            Measure{}.time_step)
+                : stage.stepping.dt),
         grains_(static_cast<double>(state.count())),
         heap_before_(heap_bytes()),
         dynamics_(material, state) {
@@ -345,7 +348,7 @@ double SceneCost::seconds() const {
 double SceneCost::particle_steps() const {
   double sum = 0;
   for (const StageCost& stage : stages)
-    sum += static_cast<double>(stage.stage.stepping.steps) * static_cast<double>(grains);
+    sum += static_cast<double>(stage.stage.passes()) * static_cast<double>(grains);
   return sum;
 }
 
@@ -377,8 +380,10 @@ SceneCost cost_of(const Scene& scene) {
   cost.snapshot_bytes = grains * 2 * sizeof(Vec3);
   cost.fields = fields_of(mean_of(path, [](const auto& t) { return t.bytes; }));
   for (StageCost& stage : stages)
-    stage.seconds = static_cast<double>(stage.stage.stepping.steps) * grains *
-                    mean_step(stage.stage.segment ? path : prepared, stage);
+    stage.seconds =
+        static_cast<double>(stage.stage.passes()) *
+        (stage.stage.leg.minimises() ? cost.force_seconds
+                                     : grains * mean_step(stage.stage.segment ? path : prepared, stage));
   cost.stages = std::move(stages);
   for (std::size_t k = 0; k < scene.measure.observe.size(); ++k) {
     const std::string& name = scene.measure.observe[k];

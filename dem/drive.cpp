@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "grainlaw/dem/controlled_drive.hpp"
+#include "grainlaw/dem/quasistatic.hpp"
 
 namespace grainlaw::dem {
 
@@ -74,6 +75,8 @@ void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& s
            const AfterStep& after_step) {
   if (leg.controlled())
     follow_controlled(dynamics, leg, plan, state, after_step);
+  else if (leg.minimises())
+    follow_quasistatic(dynamics, leg, plan, state, after_step);
   else if (leg.mode == Mode::relax)
     relax(dynamics, leg, plan, state, after_step);
   else

@@ -60,6 +60,7 @@ struct LegState {
   double eps_vol = 0, eps_dev = 0;  ///< of the path where it began
   StrainTensor axis{};              ///< of the last leg before it that sheared; zero: none
   ControlState control;             ///< of a controlled leg
+  std::uint64_t passes = 1;         ///< over the contacts in the last step; not kept
 
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {

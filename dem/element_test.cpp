@@ -93,7 +93,7 @@ ElementTest::ElementTest(const Scene& scene, std::filesystem::path out_dir, cons
       recorder_(scene, out_dir_, place_.nu_start),
       watch_(hooks, start.count()) {
   check_width(stages_, start, scene);
-  for (const Stage& stage : stages_) watch_.plan(stage.stepping.steps);
+  for (const Stage& stage : stages_) watch_.plan(stage.passes());
 }
 
 ElementTest::ElementTest(const Scene& scene, std::filesystem::path out_dir, const RunHooks& hooks,
@@ -108,7 +108,7 @@ ElementTest::ElementTest(const Scene& scene, std::filesystem::path out_dir, cons
       watch_(hooks, dynamics_.count()) {
   archive(watch_);
   archive.finish();
-  for (const Stage& stage : stages_) watch_.plan(stage.stepping.steps);
+  for (const Stage& stage : stages_) watch_.plan(stage.passes());
 }
 
 State ElementTest::first_state(const Scene& scene) {
@@ -145,7 +145,7 @@ void ElementTest::plan_again() {
 
 /// Takes the stage to its end, or to where the run is told to stop.
 void ElementTest::walk() {
-  const std::uint64_t announced = stages_[place_.stage].stepping.steps;
+  const std::uint64_t announced = stages_[place_.stage].passes();
   if (stages_[place_.stage].segment && scene_.path.by_stress()) {
     try {
       plan_again();
@@ -157,11 +157,11 @@ void ElementTest::walk() {
     }
   }
   const Stage& stage = stages_[place_.stage];
-  watch_.enter(stage.name, announced, place_.leg.step);
+  watch_.enter(stage.name, announced, place_.leg.step * stage.passes_per_step());
   recorder_.enter(dynamics_, stage, place_.leg);
   drive(dynamics_, stage.leg, stage.stepping, place_.leg, [&](std::uint64_t) {
     recorder_.after_step(dynamics_, stage, place_.leg);
-    if (!watch_.step()) return false;
+    if (!watch_.step(stage.passes_per_step(), place_.leg.passes)) return false;
     if (watch_.checkpoint_due()) write_checkpoint();
     return true;
   });

@@ -5,6 +5,7 @@
 
 #include "grainlaw/dem/controlled_drive.hpp"
 #include "grainlaw/dem/preparation.hpp"
+#include "grainlaw/dem/quasistatic.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::dem {
@@ -59,7 +60,8 @@ Stage stage_of_path(const Scene& scene, const Leg& leg, std::size_t index, doubl
   const bool rests = !leg.drives();
   const auto rows = rests ? std::uint64_t{1} : static_cast<std::uint64_t>(scene.measure.rows);
   const std::uint64_t least = leg.controlled() ? look_interval : least_steps_per_row;
-  stage.stepping = plan_steps(leg, longest_step, rests ? 1 : least * rows);
+  stage.stepping =
+      leg.minimises() ? plan_increments(leg, rows) : plan_steps(leg, longest_step, rests ? 1 : least * rows);
   if (leg.controlled()) {
     stage.row_count = rows;
   } else if (leg.duration > 0) {

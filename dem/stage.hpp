@@ -23,6 +23,11 @@ struct Stage {
 
   std::uint64_t row_count = 0;  ///< rows of a controlled leg, evenly spaced in its progress
 
+  /// Planned passes over the contacts: the steps, or what increments take about.
+  std::uint64_t passes() const { return stepping.steps * passes_per_step(); }
+  std::uint64_t passes_per_step() const { return leg.minimises() ? passes_per_increment : 1; }
+  static constexpr std::uint64_t passes_per_increment = 1000;
+
   /// Share of the leg's strain after so many steps, if it is not controlled.
   double progress(std::uint64_t step) const;
 };

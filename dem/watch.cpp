@@ -11,15 +11,18 @@ constexpr std::uint64_t work_between_looks = 200'000;  // particle-steps, some 1
 Watch::Watch(const RunHooks& hooks, std::size_t grains)
     : hooks_(hooks), grains_(grains), interval_(std::max<std::uint64_t>(1, work_between_looks / grains)) {}
 
-void Watch::enter(const std::string& stage, std::uint64_t steps, std::uint64_t taken) {
+void Watch::enter(const std::string& stage, std::uint64_t passes, std::uint64_t over) {
   stage_ = stage;
-  stage_end_ = done_ - std::min(taken, steps) + steps;
+  stage_end_ = done_ - std::min(over, passes) + passes;
   look();
 }
 
-bool Watch::step() {
-  if (done_ < stage_end_) ++done_;  // a controlled leg may take longer than planned
-  if (++taken_ % interval_ != 0) return true;
+bool Watch::step(std::uint64_t planned, std::uint64_t passes) {
+  done_ = std::min(done_ + planned,
+                   std::max(done_, stage_end_));  // a controlled leg may take longer than planned
+  const std::uint64_t before = taken_ / interval_;
+  taken_ += passes;
+  if (taken_ / interval_ == before) return true;
   look();
   return !stopped();
 }

@@ -27,12 +27,13 @@ class Watch {
  public:
   Watch(const RunHooks& hooks, std::size_t grains);
 
-  /// More steps to come.
-  void plan(std::uint64_t steps) { planned_ += steps; }
-  /// A stage of so many steps, of which some are taken already.
-  void enter(const std::string& stage, std::uint64_t steps, std::uint64_t taken);
-  /// After each step; false where the run was told to stop.
-  bool step();
+  /// More passes over the contacts to come; a step of dynamics is one.
+  void plan(std::uint64_t passes) { planned_ += passes; }
+  /// A stage of so many passes, of which some are planned to be over already.
+  void enter(const std::string& stage, std::uint64_t passes, std::uint64_t over);
+  /// After each step, planned to take so many passes, that took `passes`; false where the run was told to
+  /// stop.
+  bool step(std::uint64_t planned = 1, std::uint64_t passes = 1);
   /// Whether it is time for a checkpoint; said once.
   bool checkpoint_due() { return std::exchange(checkpoint_due_, false); }
   /// The stage is over, perhaps before its planned end.

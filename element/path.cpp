@@ -20,6 +20,8 @@ constexpr double largest_stress =
     1000;  // over k*, and of fabric: far beyond any law, so that nothing overflows
 const Range any_strain = between(-100, 100), any_rate = above_up_to(0, fastest),
             any_duration = above_up_to(0, longest_duration);
+constexpr double default_residual = 1e-6;  // of a packing in balance, over the mean contact force
+constexpr double largest_increment = 0.01;
 constexpr double servo_over_rate = 10;  // how much faster than the segment a servo may strain an axis
 constexpr std::array all_modes{
     Mode::iso,    Mode::uni,        Mode::d2,      Mode::d3,       Mode::components,
@@ -94,7 +96,18 @@ void read_controls(Reader reader, Segment& segment) {
                         " fixes the other; give one");
 }
 
+void read_residual(Reader& reader, Segment& segment) {
+  segment.residual = reader.number("residual", between(1e-12, 0.1), default_residual);
+}
+
 void read_relax(Reader& reader, Segment& segment) {
+  if (reader.has("residual")) {
+    for (const char* key : {"tolerance", "duration"})
+      if (reader.has(key))
+        reader.fail(key, "means nothing with residual: the energy is minimised, and no time passes");
+    segment.duration = longest_relaxation;
+    return read_residual(reader, segment);
+  }
   segment.tolerance = reader.number("tolerance", inside(0, 1), 1e-6);
   segment.duration = reader.number("duration", any_duration, longest_relaxation);
 }
@@ -165,14 +178,25 @@ void read_what(Reader& reader, Segment& segment) {
   read_amount(reader, segment);
 }
 
+void read_quasistatic(Reader& reader, Segment& segment) {
+  if (segment.control.by_stress())
+    reader.fail("profile", "must not be quasistatic under stress control: a servo needs time");
+  for (const char* key : {"rate", "duration"})
+    if (reader.has(key)) reader.fail(key, "means nothing in a quasistatic segment: no time passes");
+  segment.increment = reader.number("increment", above_up_to(0, largest_increment), segment.increment);
+  read_residual(reader, segment);
+}
+
 void read_profile(Reader& reader, Segment& segment) {
   const bool rests =
       segment.mode == Mode::iso || segment.mode == Mode::uni || segment.mode == Mode::components;
-  const std::string profile =
-      reader.word("profile", {"constant", "cosine", "steered"}, rests ? "cosine" : "constant");
-  segment.profile = profile == "cosine"    ? Profile::cosine
-                    : profile == "steered" ? Profile::steered
-                                           : Profile::constant;
+  static const std::array all{Profile::constant, Profile::cosine, Profile::steered, Profile::quasistatic};
+  std::vector<std::string> names;
+  for (const Profile profile : all) names.push_back(name_of(profile));
+  const std::string profile = reader.word("profile", names, rests ? "cosine" : "constant");
+  segment.profile =
+      all[static_cast<std::size_t>(std::find(names.begin(), names.end(), profile) - names.begin())];
+  if (segment.profile == Profile::quasistatic) return read_quasistatic(reader, segment);
   if (segment.profile == Profile::steered) {
     segment.wanted_ratio = reader.number("Ek_over_Ep", inside(0, 1), segment.wanted_ratio);
     if (segment.duration) reader.fail("duration", "means nothing with a steered rate; give rate");
@@ -349,6 +373,7 @@ void put_targets(Json& json, const Segment& segment) {
 Json segment_json(const Segment& segment) {
   Json json{{"mode", name_of(segment.mode)}};
   if (segment.mode == Mode::relax) {
+    if (segment.residual) return {{"mode", "relax"}, {"residual", *segment.residual}};
     json["tolerance"] = segment.tolerance;
     json["duration"] = *segment.duration;
     return json;
@@ -359,6 +384,12 @@ Json segment_json(const Segment& segment) {
   if (segment.amount) json["amount"] = *segment.amount;
   if (segment.mode == Mode::components) json["strain"] = strain_json(segment.strain);
   put_targets(json, segment);
+  if (segment.residual) {
+    json["profile"] = name_of(segment.profile);
+    json["increment"] = segment.increment;
+    json["residual"] = *segment.residual;
+    return json;
+  }
   if (segment.rate) json["rate"] = *segment.rate;
   if (segment.duration) json["duration"] = *segment.duration;
   if (!segment.only_waits()) json["profile"] = name_of(segment.profile);
@@ -410,6 +441,8 @@ std::string name_of(Profile profile) {
       return "cosine";
     case Profile::steered:
       return "steered";
+    case Profile::quasistatic:
+      return "quasistatic";
   }
   return "";
 }
@@ -485,6 +518,8 @@ Leg Path::leg(std::size_t i, const Waypoint& from, bool certain) const {
   leg.tolerance = segment.tolerance;
   leg.control = segment.control;
   leg.wanted_ratio = segment.wanted_ratio;
+  leg.increment = segment.increment;
+  leg.residual = segment.residual;
   if (segment.mode == Mode::biaxial || segment.mode == Mode::triaxial) leg.to_eps_dev = segment.to_eps_dev;
   const double size = largest(leg.strain);
   const bool waits = !leg.drives() && leg.control.by_stress();

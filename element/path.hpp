@@ -26,7 +26,12 @@ enum class Mode {
   isotropic_stress,  ///< all three axes to the same stress
   control            ///< any mix
 };
-enum class Profile { constant, cosine, steered };
+enum class Profile {
+  constant,
+  cosine,
+  steered,
+  quasistatic  ///< in increments, each brought into balance by minimising the energy: the limit of no rate
+};
 
 std::string name_of(Mode mode);
 std::string name_of(Profile profile);
@@ -51,8 +56,10 @@ struct Segment {
   std::optional<double> rate;      ///< mean strain rate of the mode, 1/us
   std::optional<double> duration;  ///< us; for relax the longest time
   Profile profile = Profile::constant;
-  double wanted_ratio = 1e-4;  ///< E_k/E_p that a steered rate keeps
-  double tolerance = 1e-6;     ///< only for relax
+  double wanted_ratio = 1e-4;      ///< E_k/E_p that a steered rate keeps
+  double tolerance = 1e-6;         ///< only for relax
+  double increment = 1e-4;         ///< quasistatic: largest strain component of a step, at most
+  std::optional<double> residual;  ///< quasistatic, or a relax that minimises: see Leg
   /// Whether no axis is driven at a strain rate: the box waits for rest or for stress targets.
   bool only_waits() const;
   std::string key;  ///< where it stands in its file ("path.segments[2]")
@@ -72,10 +79,15 @@ struct Leg {
   Control control;
   std::optional<double> to_eps_dev;  ///< ends where the box has this eps_dev, else when `strain` is applied
   double wanted_ratio = 1e-4;        ///< E_k/E_p that a steered rate keeps
+  double increment = 1e-4;           ///< of a leg that minimises: largest strain component of a step, at most
+  /// Where energy is minimised after each increment: to this largest net force over the mean contact force.
+  std::optional<double> residual;
   std::optional<StrainTensor> axis;  ///< of its deviatoric scalars; none if it does not shear
 
   /// Whether the grains decide how it goes on: under stress control, or at a steered rate.
   bool controlled() const { return control.by_stress() || profile == Profile::steered; }
+  /// Whether time stands still, and the grains go from one balance to the next.
+  bool minimises() const { return residual.has_value(); }
   /// Whether any axis is driven at a strain rate; else it relaxes, or waits for stress targets.
   bool drives() const { return strain != StrainTensor{}; }
   /// Fraction of the leg's logarithmic strain applied at time t in [0, duration], the same for all

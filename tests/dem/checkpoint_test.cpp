@@ -32,9 +32,11 @@ const char* const scene_text = R"({
   "path": {"segments": [
     {"mode": "iso", "controls": {"nu": 0.75}, "rate": 5e-4},
     {"mode": "relax", "tolerance": 1e-3, "duration": 200},
-    {"mode": "d2", "amount": 0.05, "rate": 2e-4}]},
+    {"mode": "d2", "amount": 0.05, "rate": 2e-4},
+    {"mode": "relax", "residual": 1e-4},
+    {"mode": "d2", "amount": 0.01, "profile": "quasistatic", "increment": 5e-4, "residual": 1e-4}]},
   "measure": {"rows": 10, "time_step": 0.2, "time_step_gas": 0.1,
-    "snapshots": [{"segment": 0, "nu": 0.64}, {"segment": 0, "nu": 0.7}, {"segment": 1}, {"segment": 2}]}
+    "snapshots": [{"segment": 0, "nu": 0.64}, {"segment": 0, "nu": 0.7}, {"segment": 1}, {"segment": 2}, {"segment": 4}]}
 })";
 
 Scene scene_of(const std::string& json) {

@@ -171,6 +171,16 @@ TEST(Path, RefusesStressControlThatMeansNothing) {
               testing::HasSubstr("segments[0].servo: unknown key"));
   EXPECT_EQ(refused_segment(R"({"mode": "d2", "amount": 0.1, "profile": "steered", "duration": 10})"),
             "p.json: segments[0].duration: means nothing with a steered rate; give rate");
+  EXPECT_EQ(refused_segment(R"({"mode": "d2", "amount": 0.1, "profile": "quasistatic", "rate": 1e-5})"),
+            "p.json: segments[0].rate: means nothing in a quasistatic segment: no time passes");
+  EXPECT_EQ(refused_segment(R"({"mode": "biaxial", "amount": 0.1, "profile": "quasistatic"})"),
+            "p.json: segments[0].profile: must not be quasistatic under stress control: a servo needs time");
+  EXPECT_EQ(
+      refused_segment(R"({"mode": "relax", "residual": 1e-8, "tolerance": 1e-6})"),
+      "p.json: segments[0].tolerance: means nothing with residual: the energy is minimised, and no time "
+      "passes");
+  EXPECT_THAT(refused_segment(R"({"mode": "d2", "amount": 0.1, "increment": 1e-5})"),
+              testing::HasSubstr("segments[0].increment: unknown key"));
 }
 
 TEST(SignConvention, FollowsTheAxesOfTheMode) {
