@@ -150,7 +150,10 @@ std::string value_text(calibrate::Knob knob, double value) {
     case calibrate::Knob::time_step:
       return fmt::format("time step t_c/{}", value);
     case calibrate::Knob::rate:
-      return value > 0 ? fmt::format("rate x {}", value) : std::string("quasistatic");
+      return fmt::format("rate x {}", value);
+    case calibrate::Knob::method:
+      return value > 0 ? fmt::format("quasistatic, increments of {}", value)
+                       : std::string("a tenth of the rate");
     case calibrate::Knob::gas_step:
       return fmt::format("time step of the gas t_c/{}", value);
     case calibrate::Knob::count:
@@ -231,7 +234,7 @@ Action add_bench(CLI::App& program) {
   option("--nu", arguments->nu_end, "to which the isotropic unloading goes (default: 0.74)", "X");
   command
       ->add_option("--knob", arguments->knobs,
-                   "only this knob: time_step, rate, gas_step, count; may be repeated")
+                   "only this knob: time_step, rate, method, gas_step, count; may be repeated")
       ->type_name("KNOB");
   option("-o,--output", arguments->output, "output directory (default: out/bench-dem)", "DIR");
   option("--jobs", arguments->jobs, "runs at the same time (default: one per core)", "N");

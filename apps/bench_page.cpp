@@ -29,6 +29,8 @@ std::string label_of(Knob knob) {
       return "time step";
     case Knob::rate:
       return "rate";
+    case Knob::method:
+      return "quasistatic";
     case Knob::gas_step:
       return "time step of the gas";
     case Knob::count:
@@ -37,14 +39,16 @@ std::string label_of(Knob knob) {
   return "";
 }
 
-/// "t_c/10", "× 0.3", "quasistatic", "1000"
+/// "t_c/10", "× 0.3", "increments of 0.0001", "1000"
 std::string value_of(const BenchError& line) {
   switch (line.knob) {
     case Knob::time_step:
     case Knob::gas_step:
       return "t_c/" + number(line.value, 4);
     case Knob::rate:
-      return line.value > 0 ? "× " + number(line.value, 4) : "quasistatic";
+      return "× " + number(line.value, 4);
+    case Knob::method:
+      return line.value > 0 ? "increments of " + number(line.value, 4) : "a tenth of the rate";
     case Knob::count:
       return number(line.value, 7);
   }

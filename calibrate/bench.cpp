@@ -17,6 +17,8 @@ namespace {
 constexpr double d2_rate = 2.839e-5, iso_rate = 5.0e-6;  // 1/us, the defaults of a path
 constexpr double compression_rate = 5e-5;                // of the packing, from 0.64 to nu_start
 constexpr std::int64_t fewest_packings = 3;              // where packings are compared
+constexpr double slowest = 0.1;                          // rate over the default
+constexpr double balance = 1e-9;                         // residual of the packing, so that none creeps
 constexpr double relaxation_share = 0.3;                 // of its longest duration that a relaxation takes
 
 std::string short_text(double x) {
@@ -32,8 +34,11 @@ std::string packing_name(const BenchSetting& setting, std::int64_t seed) {
 
 std::string run_name(BenchTest test, const BenchSetting& setting, std::int64_t seed, std::int64_t twin) {
   if (test == BenchTest::preparation) return packing_name(setting, seed);
-  return name_of(test) + "-n" + std::to_string(setting.count) + "-step" + std::to_string(setting.steps) +
-         "-rate" + short_text(setting.rate) + "-s" + std::to_string(seed) + "-t" + std::to_string(twin);
+  const std::string how = setting.increment > 0
+                              ? "-increment" + short_text(setting.increment)
+                              : "-step" + std::to_string(setting.steps) + "-rate" + short_text(setting.rate);
+  return name_of(test) + "-n" + std::to_string(setting.count) + how + "-s" + std::to_string(seed) + "-t" +
+         std::to_string(twin);
 }
 
 /// The values of a knob, the finest last.
@@ -43,7 +48,9 @@ std::vector<double> values_of(Knob knob, std::int64_t count) {
     case Knob::time_step:
       return {5, 10, 20, 50, 200};
     case Knob::rate:
-      return {30, 10, 3, 1, 0.3, 0.1, 0};
+      return {30, 10, 3, 1, 0.3, slowest};
+    case Knob::method:
+      return {1e-3, 3e-4, 1e-4, 0};
     case Knob::gas_step:
       return {5, 10, 20, 50, 100};
     case Knob::count:
@@ -61,6 +68,10 @@ BenchSetting setting_of(Knob knob, double value, std::int64_t count) {
       break;
     case Knob::rate:
       setting.rate = value;
+      break;
+    case Knob::method:
+      setting.increment = value;
+      if (value == 0) setting.rate = slowest;
       break;
     case Knob::gas_step:
       setting.gas_steps = static_cast<int>(value);
@@ -106,7 +117,7 @@ Json packing_scene(const BenchSetting& test, std::int64_t seed) {
   setting.gas_steps = test.gas_steps;
   const Json path{{"segments",
                    {{{"mode", "iso"}, {"controls", {{"nu", Bench::nu_start}}}, {"rate", compression_rate}},
-                    {{"mode", "relax"}}}}};
+                    {{"mode", "relax"}, {"residual", balance}}}}};
   return {{"preparation", {{"count", setting.count}, {"seed", seed}}},
           {"path", path},
           {"measure", measure_json(setting, {{{"segment", 1}}})}};
@@ -117,10 +128,12 @@ Json test_scene(const Bench& bench, BenchTest test, const BenchSetting& setting,
   const bool is_d2 = test == BenchTest::d2;
   Json segment{{"mode", is_d2 ? "d2" : "iso"}};
   segment["controls"] = is_d2 ? Json{{"eps_dev", bench.eps_dev}} : Json{{"nu", bench.nu_end}};
-  if (setting.rate > 0)
-    segment["rate"] = setting.rate * (is_d2 ? d2_rate : iso_rate);
-  else
+  if (setting.increment > 0) {
     segment["profile"] = "quasistatic";
+    segment["increment"] = setting.increment;
+  } else {
+    segment["rate"] = setting.rate * (is_d2 ? d2_rate : iso_rate);
+  }
   const std::string snapshot =
       "../" + packing_name(setting, seed) + "/" + (twin == 0 ? "snapshots.h5" : twin_file(twin));
   return {{"preparation", {{"snapshot", snapshot}}},
@@ -187,6 +200,8 @@ std::string name_of(Knob knob) {
       return "time_step";
     case Knob::rate:
       return "rate";
+    case Knob::method:
+      return "method";
     case Knob::gas_step:
       return "gas_step";
     case Knob::count:
@@ -196,7 +211,7 @@ std::string name_of(Knob knob) {
 }
 
 const std::vector<Knob>& all_knobs() {
-  static const std::vector<Knob> list{Knob::time_step, Knob::rate, Knob::gas_step, Knob::count};
+  static const std::vector<Knob> list{Knob::time_step, Knob::rate, Knob::method, Knob::gas_step, Knob::count};
   return list;
 }
 

@@ -12,7 +12,7 @@
 namespace grainlaw::calibrate {
 
 /// What is varied. The step of the gas is that of preparation; it is judged by the packing that comes out.
-enum class Knob { time_step, rate, gas_step, count };
+enum class Knob { time_step, rate, method, gas_step, count };
 std::string name_of(Knob knob);  ///< "time_step", …
 const std::vector<Knob>& all_knobs();
 
@@ -38,9 +38,10 @@ struct Bench {
 
 /// The engine's settings of one run. Defaults are those of a scene.
 struct BenchSetting {
-  int steps = 5;       ///< per smallest contact duration, on the path
-  int gas_steps = 20;  ///< the same, during preparation
-  double rate = 1;     ///< over the default rate of the mode; 0: quasistatic
+  int steps = 5;         ///< per smallest contact duration, on the path
+  int gas_steps = 20;    ///< the same, during preparation
+  double rate = 1;       ///< over the default rate of the mode
+  double increment = 0;  ///< of a quasistatic path, which has no rate; 0: dynamics
   std::int64_t count = 0;
 
   bool operator==(const BenchSetting&) const = default;
@@ -50,7 +51,7 @@ struct BenchSetting {
 struct Variant {
   Knob knob;
   BenchTest test;
-  double value;  ///< steps per contact duration, rate over the default, grains
+  double value;  ///< steps per contact duration, rate over the default, increment, grains
   BenchSetting setting;
   std::vector<std::vector<std::string>> records;  ///< names, by group
 };
