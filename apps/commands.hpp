@@ -25,5 +25,6 @@ Action add_fit(CLI::App& program);
 Action add_report(CLI::App& program);
 Action add_bench(CLI::App& program);
 Action add_export(CLI::App& program);
+Action add_probe(CLI::App& program);
 
 }  // namespace grainlaw::apps

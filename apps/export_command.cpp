@@ -8,9 +8,9 @@
 
 #include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/apps/commands.hpp"
+#include "grainlaw/apps/snapshot_scene.hpp"
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/dem/lammps_data.hpp"
-#include "grainlaw/dem/scene.hpp"
 #include "grainlaw/dem/snapshot.hpp"
 #include "grainlaw/dem/vtp.hpp"
 #include "grainlaw/element/error.hpp"
@@ -42,27 +42,13 @@ dem::FrameChoice read_choice(const Arguments& arguments) {
   return choice;
 }
 
-/// The scene that says of which material the grains are: the one named, or that of the record.
-fs::path scene_of(const Arguments& arguments) {
-  if (!arguments.scene.empty()) return arguments.scene;
-  const fs::path beside = fs::path(arguments.snapshots).parent_path() / "scene.json";
-  if (!fs::exists(beside))
-    throw Error(arguments.snapshots, "",
-                "has no scene.json beside it that says of which material its grains are; give one with "
-                "--scene");
-  return beside;
-}
-
 int run(const Arguments& arguments) {
   check_extension(arguments.output);
   const dem::FrameChoice choice = read_choice(arguments);
-  if (!fs::exists(arguments.snapshots)) throw Error(arguments.snapshots, "", "no such file");
-  const fs::path scene_file = scene_of(arguments);
+  const fs::path scene_file = scene_file_of(arguments.snapshots, arguments.scene);
   check_output("-o", arguments.output, {arguments.snapshots, scene_file});
-  auto scene = dem::Scene::read(Reader(load_json(scene_file), scene_file.string()), scene_file.parent_path());
   const dem::Frame frame = dem::read_whole_frame(arguments.snapshots, choice);
-  scene.preparation = dem::FromSnapshot{arguments.snapshots, arguments.snapshots, choice};
-  scene.check_grains(frame.state);
+  const dem::Scene scene = scene_of_frame(scene_file, arguments.snapshots, choice, frame.state);
   write_file(arguments.output, fs::path(arguments.output).extension() == ".vtp"
                                    ? dem::vtp_text(frame, scene.material)
                                    : dem::lammps_data(frame.state, scene.material));

@@ -58,20 +58,18 @@ int run_command_line(int argc, char** argv) {
   program.footer(examples);
   program.set_version_flag("--version", version_text(), "version, commit, compiler and libraries");
   program.require_subcommand(1);
-  const std::array<Action, 7> actions{add_calibrate(program), add_simulate(program), add_predict(program),
+  const std::array<Action, 8> actions{add_calibrate(program), add_simulate(program), add_predict(program),
                                       add_fit(program),       add_report(program),   add_bench(program),
-                                      add_export(program)};
+                                      add_export(program),    add_probe(program)};
   const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
   const auto is_unknown = [&](const std::string& name) {
     return std::none_of(commands.begin(), commands.end(),
                         [&](const auto* known) { return known->get_name() == name; });
   };
   if (argc > 1 && argv[1][0] != '-' && is_unknown(argv[1]))
-    return complain_usage(
-        program,
-        fmt::format(
-            "unknown command \"{}\"; known are calibrate, simulate, predict, fit, report, export, bench",
-            argv[1]));
+    return complain_usage(program, fmt::format("unknown command \"{}\"; known are calibrate, simulate, "
+                                               "predict, fit, report, probe, export, bench",
+                                               argv[1]));
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version

@@ -1,0 +1,61 @@
+// grainlaw probe: moduli of every frame, those that bear nothing named, bad input before anything is written.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "grainlaw/element/record.hpp"
+#include "program.hpp"
+
+namespace grainlaw::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class ProbeCommand : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    write("s.json", R"({
+      "preparation": {"count": 64, "rate": 1e-3, "nu": 0.5, "relax": {"tolerance": 1e-3, "duration": 20}},
+      "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.74}, "rate": 1e-3}, {"mode": "relax", "residual": 1e-8}]},
+      "measure": {"rows": 2, "time_step_gas": 0.1, "snapshots": [
+        {"segment": 0, "nu": 0.55}, {"segment": 0}, {"segment": 1}]}})");
+    ASSERT_EQ(run({"simulate", "s.json", "-o", "r"}).status, 0);
+  }
+};
+
+TEST_F(ProbeCommand, EveryFrameThatBearsLoad) {
+  const Outcome outcome = run({"probe", "r/snapshots.h5", "--amplitude", "1e-6", "-o", "m.csv"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "wrote m.csv: moduli of 2 packings\n");
+  EXPECT_THAT(outcome.err, HasSubstr("r/snapshots.h5: frame 0 is left out: unjammed"));
+  const Record record = Record::read_csv(folder / "m.csv");
+  ASSERT_EQ(record.rows(), 6u);
+  EXPECT_EQ(record["amplitude"], (std::vector<double>{0, 1e-6, -1e-6, 0, 1e-6, -1e-6}));
+  for (const std::size_t k : {0u, 3u})
+    for (const std::size_t probe : {k + 1, k + 2}) {
+      EXPECT_NEAR(record["B"][probe], record["B"][k], 1e-2 * record["B"][k]);
+      EXPECT_NEAR(record["G_oct"][probe], record["G_oct"][k], 1e-2 * record["B"][k]);
+      EXPECT_TRUE(std::isnan(record["E_xx_xx"][probe]));
+    }
+  EXPECT_GT(record["E_xx_xx"][0], record["E_xx_yy"][0]);
+  EXPECT_EQ(record["frame"][3], 2);
+}
+
+TEST_F(ProbeCommand, BadInput) {
+  const auto refused = [&](Arguments arguments, const std::vector<std::string>& parts) {
+    arguments.insert(arguments.begin(), {"probe", "r/snapshots.h5"});
+    return refuses(run(arguments), parts);
+  };
+  EXPECT_TRUE(refused({"-o", "m.csv", "--axis", "uni"}, {"--axis: must be d2 (-1, 1, 0) or d3", "got uni"}));
+  EXPECT_TRUE(
+      refused({"-o", "m.csv", "--amplitude", "0"}, {"--amplitude: must be a number >= 1e-08", "got 0"}));
+  EXPECT_TRUE(refused({"-o", "no/m.csv"}, {"-o: must lie in a directory that exists, got no/m.csv"}));
+  EXPECT_TRUE(refused({"-o", "r/scene.json"}, {"-o", "r/scene.json"}));
+  EXPECT_TRUE(refuses(run({"probe", "no.h5", "-o", "m.csv"}), {"no.h5: no such file"}));
+  EXPECT_FALSE(fs::exists(folder / "m.csv"));
+}
+
+}  // namespace
+}  // namespace grainlaw::apps
