@@ -222,7 +222,7 @@ Action add_bench(CLI::App& program) {
   bench->footer("Example:\n  grainlaw bench dem");
   CLI::App* command = bench->add_subcommand(
       "dem",
-      "What a wanted error costs: the DEM over time step, rate and number of grains, against the finest");
+      "What a wanted error costs: the DEM over time steps, rate, method and number of grains, against the finest");
   const auto arguments = std::make_shared<Arguments>();
   const auto option = [&](const char* name, std::string& value, const char* what, const char* type) {
     command->add_option(name, value, what)->type_name(type);

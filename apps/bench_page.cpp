@@ -30,7 +30,7 @@ std::string label_of(Knob knob) {
     case Knob::rate:
       return "rate";
     case Knob::method:
-      return "quasistatic";
+      return "method";
     case Knob::gas_step:
       return "time step of the gas";
     case Knob::count:

@@ -34,6 +34,7 @@ constexpr auto examples =
     "  grainlaw fit out/quick -o parameters.json                 the fits alone, from records on disk\n"
     "  grainlaw report out/quick                                 pictures and tables from what is on disk\n"
     "  grainlaw bench dem                                        what a wanted error of the DEM costs\n"
+    "  grainlaw probe out/d2/snapshots.h5 -o moduli.csv          small-strain moduli of packings\n"
     "  grainlaw export out/d2/snapshots.h5 -o d2.vtp             a packing and its force chains, for "
     "ParaView\n"
     "File formats: docs/formats.md. Every command at length: docs/commands.md.\n"

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grainlaw/apps/arguments.hpp"
@@ -25,6 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double least_over_residual = 1000;  // amplitude; else the strained packing may pass for balanced
 constexpr std::array names{"xx", "yy", "zz", "yz", "xz", "xy"};
 
 struct Arguments {
@@ -67,10 +69,15 @@ Plan plan_of(const Arguments& arguments) {
   if (arguments.axis != "d2" && arguments.axis != "d3")
     throw Error("", "--axis", "must be d2 (-1, 1, 0) or d3 (-1/2, -1/2, 1), got " + arguments.axis);
   plan.axis = arguments.axis == "d2" ? StrainTensor{-1, 1, 0} : StrainTensor{-0.5, -0.5, 1};
-  for (const std::string& text : arguments.amplitudes)
-    plan.amplitudes.push_back(read_number("--amplitude", text, between(1e-8, 0.1)));
   plan.residual =
       arguments.residual.empty() ? 1e-10 : read_number("--residual", arguments.residual, between(1e-13, 0.1));
+  for (const std::string& text : arguments.amplitudes) {
+    plan.amplitudes.push_back(read_number("--amplitude", text, between(1e-9, 0.1)));
+    if (plan.amplitudes.back() < least_over_residual * plan.residual)
+      throw Error(
+          "", "--amplitude",
+          "must be at least 1000 times the residual, which is " + to_text(plan.residual) + "; got " + text);
+  }
   return plan;
 }
 
@@ -83,36 +90,39 @@ class Probing {
     options.residual = plan.residual;
     result_ = dem::minimise(packing_, options);
     const dem::Measurement m = packing_.measure();
-    head_.insert(
-        head_.end(),
-        {m.nu, trace(m.stress) / 3 / k_star_, signed_deviator(m.stress, plan.axis) / k_star_, trace(m.fabric),
-         signed_deviator(m.fabric, plan.axis), m.C_star, m.f_NR, result_.balance.residual});
+    head_.insert(head_.end(),
+                 {m.nu, trace(m.stress) / 3 / k_star_, deviator_along(m.stress, plan.axis) / k_star_,
+                  trace(m.fabric), deviator_along(m.fabric, plan.axis), m.C_star, m.f_NR});
   }
-  /// In balance, with a backbone: there is something to probe.
-  bool bears() const { return result_.balance.jammed && result_.outcome != dem::Outcome::gave_up; }
+  bool in_balance() const { return result_.outcome != dem::Outcome::gave_up; }
+  bool bears_load() const { return result_.balance.jammed; }
   std::string text() const { return result_.text(); }
 
-  void write(Record& record) {
+  /// The rows of this packing.
+  std::vector<std::vector<double>> rows() {
     const dem::LinearResponse response = dem::linear_response(packing_);
-    append(record, 0, dem::moduli_of(response.stress, plan_.axis), 0, response.unstable, &response.energy);
+    std::vector<std::vector<double>> list{row(0, result_.balance.residual,
+                                              dem::moduli_of(response.stress, plan_.axis), 0,
+                                              response.unstable, &response.energy)};
     for (const double amplitude : plan_.amplitudes)
-      for (const double signed_amplitude : {amplitude, -amplitude}) {
-        const dem::Probe probe = dem::probe(packing_, plan_.axis, signed_amplitude, plan_.residual);
-        append(record, signed_amplitude, probe.moduli, static_cast<double>(probe.contacts_changed), nothing,
-               nullptr);
+      for (const double strain : {amplitude, -amplitude}) {
+        const dem::Probe probe = dem::probe(packing_, plan_.axis, strain, plan_.residual);
+        list.push_back(row(strain, probe.residual, probe.moduli, static_cast<double>(probe.contacts_changed),
+                           nothing, nullptr));
       }
+    return list;
   }
 
  private:
-  void append(Record& record, double amplitude, const dem::Moduli& moduli, double changed, double unstable,
-              const dem::Stiffness* energy) const {
+  std::vector<double> row(double amplitude, double residual, const dem::Moduli& moduli, double changed,
+                          double unstable, const dem::Stiffness* energy) const {
     std::vector<double> row = head_;
-    row.insert(row.end(), {amplitude, moduli.B / k_star_, moduli.A1 / k_star_, moduli.A2 / k_star_,
+    row.insert(row.end(), {residual, amplitude, moduli.B / k_star_, moduli.A1 / k_star_, moduli.A2 / k_star_,
                            moduli.G_oct / k_star_, changed, unstable});
     for (std::size_t a = 0; a < 6; ++a)
       for (std::size_t b = a; b < 6; ++b)
         row.push_back(energy != nullptr ? (*energy)[a][b] / k_star_ : nothing);
-    record.append(row);
+    return row;
   }
 
   const Plan& plan_;
@@ -122,47 +132,79 @@ class Probing {
   std::vector<double> head_;
 };
 
+/// The snapshots of one file, all opened before the work begins.
+struct Input {
+  std::string file;
+  fs::path scene;
+  std::size_t frames;
+};
+
+std::vector<Input> open_all(const Arguments& arguments) {
+  std::vector<Input> list;
+  std::vector<fs::path> files;
+  for (const std::string& file : arguments.snapshots) {
+    const fs::path scene = scene_file_of(file, arguments.scene);
+    const std::size_t frames = dem::list_frames(file).size();
+    const dem::FrameChoice last;
+    scene_of_frame(scene, file, last, dem::read_frame(file, last));
+    list.push_back({file, scene, frames});
+    files.insert(files.end(), {fs::path(file), scene});
+  }
+  check_output("-o", arguments.output, files);
+  return list;
+}
+
+enum class Found { moduli, no_load, no_balance };
+
+/// Adds the rows of a frame; says what became of it.
+Found probe_frame(const Plan& plan, const Input& input, std::size_t number, std::size_t frame,
+                  Terminal& terminal, Record& record) {
+  const auto left_out = [&](const std::string& why) {
+    terminal.warn(fmt::format("{}: frame {} is left out: {}", input.file, frame, why));
+  };
+  const dem::FrameChoice choice{.nu = {}, .frame = frame, .segment = {}};
+  const dem::Frame read = dem::read_whole_frame(input.file, choice);
+  const dem::Scene scene = scene_of_frame(input.scene, input.file, choice, read.state);
+  try {
+    Probing probing(plan, scene.material, read.state,
+                    {static_cast<double>(number), static_cast<double>(frame),
+                     static_cast<double>(read.observables.segment)});
+    if (!probing.in_balance() || !probing.bears_load()) {
+      left_out(probing.text());
+      return probing.in_balance() ? Found::no_load : Found::no_balance;
+    }
+    for (const std::vector<double>& row : probing.rows()) record.append(row);
+    return Found::moduli;
+  } catch (const Error& error) {
+    left_out(error.what());
+    return Found::no_balance;
+  }
+}
+
 int run(const Arguments& arguments) {
   const Plan plan = plan_of(arguments);
-  std::vector<fs::path> scenes, inputs;
-  for (const std::string& file : arguments.snapshots) {
-    scenes.push_back(scene_file_of(file, arguments.scene));
-    inputs.insert(inputs.end(), {file, scenes.back()});
-  }
-  check_output("-o", arguments.output, inputs);
+  const std::vector<Input> inputs = open_all(arguments);
   Terminal terminal;
   Record record(columns());
-  std::size_t probed = 0;
-  for (std::size_t n = 0; n < arguments.snapshots.size(); ++n) {
-    const std::string& file = arguments.snapshots[n];
-    const std::size_t frames = dem::list_frames(file).size();
-    for (std::size_t k = 0; k < frames; ++k) {
-      terminal.draw(fmt::format("{}: frame {} of {}", file, k + 1, frames));
-      const dem::FrameChoice choice{.nu = {}, .frame = k, .segment = {}};
-      const dem::Frame frame = dem::read_whole_frame(file, choice);
-      const dem::Scene scene = scene_of_frame(scenes[n], file, choice, frame.state);
-      Probing probing(
-          plan, scene.material, frame.state,
-          {static_cast<double>(n), static_cast<double>(k), static_cast<double>(frame.observables.segment)});
-      if (!probing.bears()) {
-        terminal.warn(fmt::format("{}: frame {} is left out: {}", file, k, probing.text()));
-        continue;
-      }
-      probing.write(record);
-      ++probed;
+  std::size_t probed = 0, unbalanced = 0;
+  for (std::size_t n = 0; n < inputs.size(); ++n)
+    for (std::size_t k = 0; k < inputs[n].frames; ++k) {
+      terminal.draw(fmt::format("{}: frame {} of {}", inputs[n].file, k + 1, inputs[n].frames));
+      const Found found = probe_frame(plan, inputs[n], n, k, terminal, record);
+      probed += found == Found::moduli ? 1 : 0;
+      unbalanced += found == Found::no_balance ? 1 : 0;
     }
-  }
   record.write_csv(arguments.output);
   terminal.say(fmt::format("wrote {}: moduli of {} packings", arguments.output, probed));
-  return all_well;
+  return probed > 0 && unbalanced == 0 ? all_well : failed;
 }
 
 }  // namespace
 
 Action add_probe(CLI::App& program) {
-  CLI::App* command = program.add_subcommand(
-      "probe",
-      "Small-strain moduli of packings: all 21 constants by linear response, and by strains applied");
+  CLI::App* command = program.add_subcommand("probe",
+                                             "Small-strain moduli of packings: their 21 elastic constants by "
+                                             "linear response, and by strains applied");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("SNAPSHOTS.h5", arguments->snapshots, "snapshots of records; every frame is probed")
       ->required();
@@ -172,7 +214,8 @@ Action add_probe(CLI::App& program) {
   command
       ->add_option("--amplitude", arguments->amplitudes,
                    "also apply this strain, forwards and backwards; may be repeated")
-      ->type_name("STRAIN");
+      ->type_name("STRAIN")
+      ->allow_extra_args(false);
   command->add_option("--axis", arguments->axis, "axis of shear: d2 or d3 (default: d2)")->type_name("MODE");
   command
       ->add_option("--residual", arguments->residual,

@@ -212,7 +212,7 @@ std::vector<Recommendation> recommend(const std::vector<BenchError>& errors) {
     const Candidate* best = nullptr;
     for (const auto& [value, candidate] : candidates)
       if (candidate.good && (best == nullptr || candidate.cost < best->cost)) best = &candidate;
-    if (best == nullptr) continue;
+    if (best == nullptr || knob == Knob::method) continue;  // another method has a limit of its own
     list.push_back({knob, best->worst->value, ratio(*best->worst), best->worst->test, best->worst->quantity});
   }
   return list;

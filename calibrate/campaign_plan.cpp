@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "grainlaw/dem/stage.hpp"
+
 namespace grainlaw::calibrate {
 
 namespace {
@@ -59,10 +61,7 @@ Json scene_json(const Campaign& campaign, const CampaignTest& test, std::int64_t
 
 double estimate_particle_steps(const Campaign& campaign, const CampaignTest& test) {
   const double contact = campaign.material.contact_duration(campaign.material.r_min());
-  double steps = 0;
-  for (const Leg& leg : test.path.legs(test.nu_start))
-    steps += leg.duration * (leg.mode == Mode::relax ? relaxation_share : 1.0) /
-             (test.measure.time_step * contact);
+  double steps = dem::expected_passes(test.path.legs(test.nu_start), test.measure, contact);
   if (!test.from) {
     const auto& packing = campaign.preparation;
     const double compression = std::log(packing.nu / packing.nu_gas) / 3 / packing.rate;

@@ -21,6 +21,7 @@ namespace grainlaw::dem {
 
 namespace {
 
+constexpr double trial_step = 0.1;              // over t_c, while trial packings are made
 constexpr std::size_t whole_trial = 1500;       // packings of up to so many grains are tried as they are
 constexpr std::size_t base_grains = 1000;       // larger ones are made of copies of one of about this size
 constexpr std::size_t largest_trial = 200'000;  // beyond, a grain costs the same
@@ -64,7 +65,7 @@ class TrialPacking {
     NewPacking packing = like;
     packing.count = static_cast<std::int64_t>(std::max<std::size_t>(8, wanted / (times_ * times_ * times_)));
     state_ = random_gas(material, packing);
-    step_ = time_step(material, *std::min_element(state_.radius.begin(), state_.radius.end()), 0.1);
+    step_ = time_step(material, *std::min_element(state_.radius.begin(), state_.radius.end()), trial_step);
   }
 
   void compress_to(double nu) {
@@ -79,7 +80,7 @@ class TrialPacking {
   State state() const { return times_ > 1 ? tiled(state_, times_) : state_; }
 
  private:
-  /// `strain_per_step` at t_c/10; a relaxation takes a thousand steps.
+  /// `strain_per_step` at the trial's step; a relaxation takes a thousand steps.
   void go(Mode mode, const StrainTensor& strain, double strain_per_step) {
     Leg leg{};
     leg.mode = mode;

@@ -65,7 +65,7 @@ class ElementTest {
   void plan_again();
   void walk();
   void leave_leg();
-  void cut_short();
+  void cut_short(const std::string& why);
   double wall_s() const { return place_.wall_s + seconds_since(begin_); }
   void write_checkpoint() const;
   void write_record(const RunSummary& summary) const;
@@ -159,15 +159,20 @@ void ElementTest::walk() {
   const Stage& stage = stages_[place_.stage];
   watch_.enter(stage.name, announced, place_.leg.step * stage.passes_per_step());
   recorder_.enter(dynamics_, stage, place_.leg);
-  drive(dynamics_, stage.leg, stage.stepping, place_.leg, [&](std::uint64_t) {
-    recorder_.after_step(dynamics_, stage, place_.leg);
-    if (!watch_.step(stage.passes_per_step(), place_.leg.passes)) return false;
-    if (watch_.checkpoint_due()) write_checkpoint();
-    return true;
-  });
+  try {
+    drive(dynamics_, stage.leg, stage.stepping, place_.leg, [&](std::uint64_t) {
+      recorder_.after_step(dynamics_, stage, place_.leg);
+      if (!watch_.step(stage.passes_per_step(), place_.leg.passes)) return false;
+      if (watch_.checkpoint_due()) write_checkpoint();
+      return true;
+    });
+  } catch (const Error& error) {
+    if (!stage.leg.minimises()) throw;
+    return cut_short(error.what());
+  }
   if (watch_.stopped()) return;
   watch_.leave();
-  if (place_.leg.control.lost) return cut_short();
+  if (place_.leg.control.lost) return cut_short(why_lost(scene_.material, stage.leg, place_.leg));
   recorder_.leave(dynamics_, stage, place_.leg);
   leave_leg();
 }
@@ -190,10 +195,10 @@ void ElementTest::leave_leg() {
 }
 
 /// Ends the test on a leg that cannot go on.
-void ElementTest::cut_short() {
+void ElementTest::cut_short(const std::string& why) {
   const Stage& stage = stages_[place_.stage];
-  cut_short_ = "segment " + std::to_string(*stage.segment) + " (" + name_of(stage.leg.mode) +
-               "): " + why_lost(scene_.material, stage.leg, place_.leg) + "; the test ends there";
+  cut_short_ = "segment " + std::to_string(*stage.segment) + " (" + name_of(stage.leg.mode) + "): " + why +
+               "; the test ends there";
   place_.stage = stages_.size();
 }
 

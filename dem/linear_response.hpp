@@ -32,8 +32,8 @@ struct LinearResponse {
   Sym6 prestress{};    ///< sigma of the backbone, compression positive, ug/(mm us^2)
   std::size_t backbone = 0, contacts = 0;  ///< grains that bear load, contacts between them
   std::uint64_t products = 0;              ///< of the Hessian with a displacement
-  /// Systems, out of six, in which a displacement was met that no stiffness resists: the network is not in a
-  /// stable balance, and C no limit of small strains.
+  /// Systems, out of six, in which a displacement was met that no stiffness resists while the box is
+  /// held: the network is not in a stable balance, and C no limit of small strains.
   int unstable = 0;
 };
 
@@ -46,8 +46,8 @@ struct LinearResponseOptions {
 /// not suffice.
 LinearResponse linear_response(StaticPacking& packing, const LinearResponseOptions& options = {});
 
-/// The four moduli of Eqs. 4.9 and 4.10 along an axis of shear, in the unit of C: from strain (3 d(eps_v),
-/// d(eps_dev)) to stress (dP, d(sigma_dev)).
+/// The four moduli of Eqs. 4.9 and 4.10 along an axis of shear (sigma_dev: what of the stress lies along it,
+/// see deviator_along), in the unit of C: from strain (3 d(eps_v), d(eps_dev)) to stress (dP, d(sigma_dev)).
 struct Moduli {
   double B = 0;      ///< dP/(3 d(eps_v)): bulk modulus
   double A1 = 0;     ///< dP/d(eps_dev)

@@ -58,13 +58,10 @@ Probe probe(const StaticPacking& packing, const StrainTensor& axis, double ampli
     StaticPacking after = strained(before, strain, residual);
     Sym6 stress = after.measure().stress;
     for (std::size_t c = 0; c < 6; ++c) stress[c] -= sigma[c];
-    const double mean = trace(axis) / 3;
-    double along =
-        0;  // sqrt(3 J2) of a stress along the axis: 3/2 of its projection over the axis' own sqrt(3 J2)
-    for (std::size_t c = 0; c < 3; ++c) along += 1.5 * (axis[c] - mean) * stress[c] / size;
     of_pressure = trace(stress) / 3 / amplitude;
-    of_deviator = along / amplitude;
+    of_deviator = deviator_along(stress, axis) / amplitude;
     result.contacts_changed += differences(contacts, touching(after));
+    result.residual = std::max(result.residual, after.balance().residual);
   };
   change({amplitude / 3, amplitude / 3, amplitude / 3}, result.moduli.B, result.moduli.A2);
   StrainTensor deviatoric{};

@@ -16,6 +16,8 @@ struct Probe {
   /// Contacts between grains that bear load which opened or closed, in both probes together. Moduli are
   /// elastic where there are none.
   std::uint64_t contacts_changed = 0;
+  double residual =
+      0;  ///< largest net force over the mean contact force that was reached, the larger of both
 };
 
 /// Strains two copies of `packing`, which must be in balance, one isotropically and one along `axis`

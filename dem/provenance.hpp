@@ -18,8 +18,9 @@ struct Provenance {
   std::string simd;                   ///< instruction set of the kernels, see simd_target()
   std::string started;                ///< UTC, ISO 8601: 2024-05-31T12:34:56Z
   double wall_time_s = 0;
-  std::uint64_t particle_steps = 0;  ///< grains times time steps or passes of a minimiser, preparation included
-  double k_star = 0;                 ///< unit of stress k/(2<r>), ug/(mm us^2) = MPa
+  std::uint64_t particle_steps =
+      0;              ///< grains times time steps or passes of a minimiser, preparation included
+  double k_star = 0;  ///< unit of stress k/(2<r>), ug/(mm us^2) = MPa
   double k_star_kPa = 0;
   double time_step = 0;  ///< us, during the path
   std::vector<std::string> warnings;

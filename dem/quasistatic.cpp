@@ -38,8 +38,8 @@ void follow_quasistatic(Dynamics& dynamics, const Leg& leg, const StepPlan& plan
     const MinimiseResult result = minimise(packing, options);
     if (result.outcome == Outcome::gave_up)
       throw Error("the energy was not minimised in increment " + std::to_string(n) + " of " +
-                  std::to_string(plan.steps) + " (" + result.text() + "); residual must be larger than " +
-                  to_text(*leg.residual));
+                  std::to_string(plan.steps) + ": " + result.text() +
+                  (result.balance.jammed ? "; residual must be larger" : ""));
     state.passes = result.evaluations + result.products;
     dynamics = Dynamics(dynamics.material(), packing.state(), dynamics.threads());
     if (!after_step(n)) return;

@@ -1,4 +1,5 @@
-// Takes grains along a leg from one balance to the next: the limit of a vanishing strain rate.
+// Takes grains along a leg from one balance to the next, athermal and overdamped. Between rearrangements
+// these are the states of a slow flow; beyond them they need not be.
 #pragma once
 
 #include "grainlaw/dem/drive.hpp"

@@ -12,6 +12,8 @@ namespace grainlaw::dem {
 
 namespace {
 
+constexpr double relaxation_share = 0.3;  // of its longest duration that a relaxation takes
+
 constexpr std::uint64_t least_steps_per_row = 2;
 
 /// The share of a leg's strain at which a wanted snapshot lies.
@@ -84,6 +86,18 @@ double Stage::progress(std::uint64_t step) const {
 LongestSteps::LongestSteps(const Scene& scene, double smallest_radius)
     : path(time_step(scene.material, smallest_radius, scene.measure.time_step)),
       preparation(time_step(scene.material, smallest_radius, scene.measure.time_step_gas)) {}
+
+double expected_passes(const std::vector<Leg>& legs, const Measure& measure, double contact_duration) {
+  double passes = 0;
+  for (const Leg& leg : legs)
+    if (leg.minimises())
+      passes += static_cast<double>(plan_increments(leg, static_cast<std::uint64_t>(measure.rows)).steps *
+                                    Stage::passes_per_increment);
+    else
+      passes += leg.duration * (leg.mode == Mode::relax ? relaxation_share : 1.0) /
+                (measure.time_step * contact_duration);
+  return passes;
+}
 
 std::vector<Stage> plan_stages(const Scene& scene, double nu_start, const LongestSteps& longest) {
   std::vector<Stage> stages;

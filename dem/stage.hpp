@@ -38,6 +38,10 @@ struct LongestSteps {
   LongestSteps(const Scene& scene, double smallest_radius);
 };
 
+/// Passes over the contacts that legs take, about: steps, or those of a minimiser; of a relaxation's longest
+/// time a part.
+double expected_passes(const std::vector<Leg>& legs, const Measure& measure, double contact_duration);
+
 /// All stages of a test whose path starts at `nu_start`.
 std::vector<Stage> plan_stages(const Scene& scene, double nu_start, const LongestSteps& longest);
 

@@ -15,7 +15,7 @@ struct RunHooks {
   /// going on ("compress the gas", "d2 (2 of 3)"). Relaxations may end early, so the share can jump ahead; it
   /// never falls.
   std::function<void(double fraction_done, const std::string& stage)> progress;
-  /// When it turns true the test stops within some 10 ms.
+  /// When it turns true the test stops within some 10 ms, or after the increment of a quasistatic leg.
   const std::atomic<bool>* stop = nullptr;
   /// Seconds from one checkpoint to the next; 0: one at every look, some ten milliseconds apart.
   double checkpoint_every = 60;

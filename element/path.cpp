@@ -21,7 +21,7 @@ constexpr double largest_stress =
 const Range any_strain = between(-100, 100), any_rate = above_up_to(0, fastest),
             any_duration = above_up_to(0, longest_duration);
 constexpr double default_residual = 1e-6;  // of a packing in balance, over the mean contact force
-constexpr double largest_increment = 0.01;
+constexpr double least_increment = 1e-9, largest_increment = 0.01;
 constexpr double servo_over_rate = 10;  // how much faster than the segment a servo may strain an axis
 constexpr std::array all_modes{
     Mode::iso,    Mode::uni,        Mode::d2,      Mode::d3,       Mode::components,
@@ -181,9 +181,12 @@ void read_what(Reader& reader, Segment& segment) {
 void read_quasistatic(Reader& reader, Segment& segment) {
   if (segment.control.by_stress())
     reader.fail("profile", "must not be quasistatic under stress control: a servo needs time");
+  if (segment.mode == Mode::control)
+    reader.fail("profile", "must not be quasistatic in control; with three strains, components is the same");
   for (const char* key : {"rate", "duration"})
     if (reader.has(key)) reader.fail(key, "means nothing in a quasistatic segment: no time passes");
-  segment.increment = reader.number("increment", above_up_to(0, largest_increment), segment.increment);
+  segment.increment =
+      reader.number("increment", between(least_increment, largest_increment), segment.increment);
   read_residual(reader, segment);
 }
 

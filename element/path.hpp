@@ -30,7 +30,7 @@ enum class Profile {
   constant,
   cosine,
   steered,
-  quasistatic  ///< in increments, each brought into balance by minimising the energy: the limit of no rate
+  quasistatic  ///< in increments, each brought into balance by minimising the energy; no time passes
 };
 
 std::string name_of(Mode mode);

@@ -19,4 +19,13 @@ inline double deviator_magnitude(const Sym6& q) {
   return std::sqrt(0.5 * (a * a + b * b + c * c + 6.0 * shear));
 }
 
+/// What of Q lies along the deviator n, in the measure of Q_dev: (3/2) n : Q/n_dev. It is Q_dev with its sign
+/// where the two are coaxial, and linear in Q everywhere. n must have a deviator.
+inline double deviator_along(const Sym6& q, const Sym6& n) {
+  const double mean = trace(n) / 3;
+  const double product = (n[0] - mean) * q[0] + (n[1] - mean) * q[1] + (n[2] - mean) * q[2] +
+                         2 * (n[3] * q[3] + n[4] * q[4] + n[5] * q[5]);
+  return 1.5 * product / deviator_magnitude(n);
+}
+
 }  // namespace grainlaw

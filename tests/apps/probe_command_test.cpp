@@ -50,11 +50,29 @@ TEST_F(ProbeCommand, BadInput) {
   };
   EXPECT_TRUE(refused({"-o", "m.csv", "--axis", "uni"}, {"--axis: must be d2 (-1, 1, 0) or d3", "got uni"}));
   EXPECT_TRUE(
-      refused({"-o", "m.csv", "--amplitude", "0"}, {"--amplitude: must be a number >= 1e-08", "got 0"}));
+      refused({"-o", "m.csv", "--amplitude", "0"}, {"--amplitude: must be a number >= 1e-09", "got 0"}));
+  EXPECT_TRUE(refused({"-o", "m.csv", "--residual", "1e-3", "--amplitude", "1e-6"},
+                      {"--amplitude: must be at least 1000 times the residual, which is 0.001; got 1e-6"}));
   EXPECT_TRUE(refused({"-o", "no/m.csv"}, {"-o: must lie in a directory that exists, got no/m.csv"}));
   EXPECT_TRUE(refused({"-o", "r/scene.json"}, {"-o", "r/scene.json"}));
   EXPECT_TRUE(refuses(run({"probe", "no.h5", "-o", "m.csv"}), {"no.h5: no such file"}));
   EXPECT_FALSE(fs::exists(folder / "m.csv"));
+}
+
+TEST_F(ProbeCommand, OptionsMayComeFirst) {
+  EXPECT_EQ(run({"probe", "--amplitude", "1e-6", "r/snapshots.h5", "-o", "m.csv"}).status, 0);
+}
+
+TEST_F(ProbeCommand, WhereNothingBearsLoadItFails) {
+  write(
+      "gas.json",
+      R"({"preparation": {"count": 64, "rate": 1e-3, "nu": 0.4, "relax": {"tolerance": 1e-3, "duration": 20}},
+    "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.45}, "rate": 1e-3}]},
+    "measure": {"rows": 2, "time_step_gas": 0.1, "snapshots": [{"segment": 0}]}})");
+  ASSERT_EQ(run({"simulate", "gas.json", "-o", "gas"}).status, 0);
+  const Outcome outcome = run({"probe", "gas/snapshots.h5", "-o", "m.csv"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("gas/snapshots.h5: frame 0 is left out: unjammed"));
 }
 
 }  // namespace

@@ -87,8 +87,7 @@ TEST(Bench, TheFinestValueComesLastAndCostsMost) {
   for (const Job& job : plan(bench)) work[job.record] = job.particle_steps;
   for (const Sweep& sweep : sweeps(bench))
     for (std::size_t i = 1; i < sweep.variants.size(); ++i) {
-      // Another method may cost less, and each row takes one increment at least.
-      if (sweep.knob == Knob::method) continue;
+      if (sweep.knob == Knob::method && i + 1 == sweep.variants.size()) continue;  // the flow may cost less
       EXPECT_GT(work.at(sweep.variants[i].records[0][0]), work.at(sweep.variants[i - 1].records[0][0]))
           << name_of(sweep.knob) << " " << i;
     }

@@ -54,11 +54,11 @@ TEST(CampaignPlan, EveryRunIsASceneThatCanBeRead) {
 }
 
 TEST(CampaignPlan, WorkIsGrainsTimesSteps) {
-  // D2 to 0.4 at the default rate takes 0.4/sqrt(3)/2.839e-5 us, in steps of 0.1 of the smallest pair's t_c =
+  // D2 to 0.4 at the default rate takes 0.4/sqrt(3)/2.839e-5 us, in steps of 0.2 of the smallest pair's t_c =
   // 0.2279 us.
   const auto campaign = campaign_of(with_tests(iso + "," + d2(R"({"test": "iso", "nu": 0.7})")));
   EXPECT_NEAR(estimate_particle_steps(campaign, campaign.test("d2")),
-              100 * 0.4 / std::sqrt(3.0) / 2.839e-5 / (0.1 * 0.2279), 1e-3 * 3.57e7);
+              100 * 0.4 / std::sqrt(3.0) / 2.839e-5 / (0.2 * 0.2279), 1e-3 * 1.78e7);
 }
 
 }  // namespace

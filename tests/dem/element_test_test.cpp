@@ -44,7 +44,8 @@ const char* const small_scene = R"({
     {"mode": "relax", "tolerance": 1e-5, "duration": 200},
     {"mode": "d2", "amount": 0.05, "rate": 1e-4},
     {"mode": "uni", "controls": {"nu": 0.72}, "rate": 1e-4}]},
-  "measure": {"rows": 10, "snapshots": [{"segment": 0, "nu": 0.7}, {"segment": 1}, {"segment": 2, "eps_dev": 0.03}]}
+  "measure": {"rows": 10, "time_step": 0.1,
+    "snapshots": [{"segment": 0, "nu": 0.7}, {"segment": 1}, {"segment": 2, "eps_dev": 0.03}]}
 })";
 
 TEST_F(ElementTest, ShearComponentsTiltTheBox) {

@@ -61,8 +61,7 @@ TEST(Quasistatic, EachStepEndsInBalanceAndTakesNoTime) {
   EXPECT_NEAR(dynamics.cell().volume(), volume, 1e-12 * volume);
 }
 
-/// While no contact opens or closes a slow flow goes through the same balances.
-TEST(Quasistatic, IsTheLimitOfASlowFlow) {
+TEST(Quasistatic, WhileNoContactOpensOrClosesItIsASlowFlow) {
   const Material material;
   Dynamics still = balanced(material), flowing = still;
   const Sym6 start = still.static_stress();
