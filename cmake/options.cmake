@@ -29,8 +29,9 @@ add_library(grainlaw_warnings INTERFACE)
 target_compile_options(grainlaw_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                        -Wold-style-cast -Woverloaded-virtual $<$<BOOL:${GRAINLAW_WERROR}>:-Werror>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # False alarms of g++ 12 where strings are joined (GCC bugs 105329 and 105651).
-  target_compile_options(grainlaw_warnings INTERFACE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
+  # False alarms of g++ 12 where strings are joined or moved (GCC bugs 105329 and 105651).
+  target_compile_options(grainlaw_warnings INTERFACE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
+                         -Wno-stringop-overread)
 endif()
 if(GRAINLAW_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
