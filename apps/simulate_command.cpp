@@ -13,6 +13,7 @@
 #include "grainlaw/apps/interrupt.hpp"
 #include "grainlaw/apps/locations.hpp"
 #include "grainlaw/apps/terminal.hpp"
+#include "grainlaw/calibrate/kept_record.hpp"
 #include "grainlaw/calibrate/lock_file.hpp"
 #include "grainlaw/dem/checkpoint.hpp"
 #include "grainlaw/dem/element_test.hpp"
@@ -72,9 +73,11 @@ void remove_leftover(const fs::path& part) {
   fs::remove_all(part);
 }
 
-/// Makes the folder ready for the test: empty, or with the checkpoint that it is to go on from.
+/// Makes the folder ready for the test: empty, or with the checkpoint that it is to go on from, or with the
+/// whole record of a run that was killed before it could give it its name.
 void make_ready(const fs::path& part, const dem::Scene& scene, const Arguments& arguments) {
-  if (!dem::has_checkpoint(part)) {
+  const bool whole = dem::has_whole_record(part);
+  if (!dem::has_checkpoint(part) && !whole) {
     if (arguments.run.resume && !fs::exists(part))
       throw Error(arguments.output, "",
                   "holds no interrupted test to go on with (no " + part.filename().string() +
@@ -85,7 +88,10 @@ void make_ready(const fs::path& part, const dem::Scene& scene, const Arguments& 
     throw Error(
         arguments.output, "",
         "holds an interrupted test; go on with --resume, or remove " + part.string() + " to start anew");
-  dem::check_checkpoint(part, scene);
+  if (whole)
+    calibrate::check_kept_record(part, scene.to_json(part));
+  else
+    dem::check_checkpoint(part, scene);
 }
 
 std::string resume_command(const Arguments& arguments) {
@@ -126,6 +132,11 @@ int run(const Arguments& arguments) {
   make_ready(part, scene, arguments);
   Interrupt interrupt;
   Terminal terminal;
+  if (dem::has_whole_record(part)) {
+    fs::rename(part, folder);
+    terminal.say("the test had come to its end; " + arguments.output + " now holds its record");
+    return all_well;
+  }
   dem::RunSummary summary;
   try {
     summary = dem::run_element_test(scene, part, hooks(terminal, interrupt, arguments));

@@ -81,6 +81,9 @@ std::vector<WrittenTest> read_test(Reader& reader, const Campaign& campaign) {
     if (std::find(campaign.seeds.begin(), campaign.seeds.end(), seed) == campaign.seeds.end())
       reader.fail("seeds", "must be some of the campaign's seeds, got " + std::to_string(seed));
   test.path = read_path(reader.object("path"));
+  if (test.role == Role::fit && test.path.by_stress())
+    reader.fail("role",
+                "must be predict where the path is under stress control, got fit: the laws follow strains");
   test.measure = dem::Measure::read(reader.object_or_empty("measure"), campaign.measure);
   reader.finish();
   if (!from || !from->list) return {{test, from}};

@@ -35,7 +35,8 @@ struct CampaignTest {
   std::vector<std::int64_t> seeds;  ///< a subset of the campaign's
   Path path;
   dem::Measure measure;  ///< without the snapshots that other tests need
-  double nu_start;       ///< nominal volume fraction it starts from
+  double nu_start;       ///< nominal volume fraction it starts from, as if servos strained nothing
+  bool nu_known = true;  ///< whether it starts from there: not where a servo comes before
   std::string key;       ///< where it stands in its file ("tests[2]")
 };
 

@@ -18,33 +18,38 @@ constexpr double same_nu = 1e-9;
 
 std::string quoted(const std::string& name) { return '"' + name + '"'; }
 
-/// The volume fractions that a test's path runs through.
+/// The volume fractions that a test's path runs through: known up to its first segment under stress control.
 class Passage {
  public:
   explicit Passage(const CampaignTest& test) {
-    for (const Leg& leg : test.path.legs(test.nu_start))
+    for (const Leg& leg : test.path.nominal_legs(test.nu_start, test.nu_known))
       ends_.push_back({test.nu_start * std::exp(leg.eps_vol[0]), test.nu_start * std::exp(leg.eps_vol[1])});
+    const auto& segments = test.path.segments;
+    const auto servo = std::find_if(segments.begin(), segments.end(),
+                                    [](const Segment& segment) { return segment.control.by_stress(); });
+    known_ = test.nu_known ? static_cast<std::size_t>(servo - segments.begin()) : 0;
   }
 
   std::size_t segments() const { return ends_.size(); }
+  bool known(std::size_t segment) const { return segment < known_; }
   double begin(std::size_t segment) const { return ends_[segment][0]; }
   double end(std::size_t segment) const { return ends_[segment][1]; }
   bool passes(std::size_t segment, double nu) const {
     const auto [low, high] =
         std::minmax({begin(segment), end(segment)});  // by value: the ends are temporaries
-    return nu >= low - same_nu && nu <= high + same_nu;
+    return known(segment) && nu >= low - same_nu && nu <= high + same_nu;
   }
-  /// The last segment that passes nu; the first one if none does.
+  /// The last segment that is known to pass nu; the first one if none is.
   std::size_t last_through(double nu) const {
     std::size_t segment = segments() - 1;
     while (segment > 0 && !passes(segment, nu)) --segment;
     return segment;
   }
-  /// "0.64 to 0.82", of one segment or of all.
+  /// "0.64 to 0.82", of one segment or of all that are known.
   std::string range(std::optional<std::int64_t> segment) const {
     double low = 1, high = 0;
     for (std::size_t i = 0; i < segments(); ++i) {
-      if (segment && static_cast<std::size_t>(*segment) != i) continue;
+      if (!known(i) || (segment && static_cast<std::size_t>(*segment) != i)) continue;
       low = std::min({low, begin(i), end(i)});
       high = std::max({high, begin(i), end(i)});
     }
@@ -54,6 +59,7 @@ class Passage {
 
  private:
   std::vector<std::array<double, 2>> ends_;
+  std::size_t known_ = 0;
 };
 
 /// Looks up origins, producers before those that start from them.
@@ -123,16 +129,23 @@ class Origins {
     if (from.segment) segment = static_cast<std::size_t>(*from.segment);
     test.from = Origin{producer.name, segment, std::nullopt};
     test.nu_start = passage.end(segment);
+    test.nu_known = passage.known(segment);
     if (from.nu.empty()) return;
     const double nu = from.nu.front();
     // Without `segment`, the last one that passes this state: the unloading branch of an isotropic test.
     if (!from.segment) segment = passage.last_through(nu);
+    if (!passage.known(segment))
+      fail(test, "from.nu",
+           "must be left out, got " + to_text(nu) + ": how dense the grains are in segment " +
+               std::to_string(segment) + " of " + quoted(producer.name) +
+               " is known only when a servo has strained them; without nu the test starts from its end");
     if (!passage.passes(segment, nu))
       fail(test, "from.nu",
            "must be a volume fraction that " + quoted(producer.name) + " passes" +
                (from.segment ? " in segment " + std::to_string(segment) : "") + ", " +
                passage.range(from.segment) + ", got " + to_text(nu));
     test.nu_start = nu;
+    test.nu_known = true;
     const bool at_end = std::abs(nu - passage.end(segment)) <= same_nu;
     const bool at_begin = !at_end && std::abs(nu - passage.begin(segment)) <= same_nu;
     if (at_begin && segment == 0)
@@ -144,14 +157,16 @@ class Origins {
     if (!at_end && !at_begin) test.from->nu = nu;
   }
 
-  /// Targets that are out of reach, snapshots that are not on the path.
+  /// Targets that are out of reach, snapshots that are not on the path; a path that starts where a servo has
+  /// led is checked when it begins.
   void check_targets(const CampaignTest& test) const {
-    const std::size_t count = test.path.legs(test.nu_start).size();
+    const std::size_t count = test.path.nominal_legs(test.nu_start, test.nu_known).size();
     for (std::size_t i = 0; i < test.measure.snapshots.size(); ++i)
       if (test.measure.snapshots[i].segment >= count)
         fail(test, "measure.snapshots[" + std::to_string(i) + "].segment",
              "must be less than " + std::to_string(count) + ", the number of segments, got " +
                  std::to_string(test.measure.snapshots[i].segment));
+    if (!test.nu_known) return;
     try {
       dem::Scene{campaign_.material, campaign_.preparation, test.path, test.measure, ""}.legs(test.nu_start);
     } catch (const Error& error) {

@@ -61,7 +61,8 @@ Json scene_json(const Campaign& campaign, const CampaignTest& test, std::int64_t
 
 double estimate_particle_steps(const Campaign& campaign, const CampaignTest& test) {
   const double contact = campaign.material.contact_duration(campaign.material.r_min());
-  double steps = dem::expected_passes(test.path.legs(test.nu_start), test.measure, contact);
+  double steps =
+      dem::expected_passes(test.path.nominal_legs(test.nu_start, test.nu_known), test.measure, contact);
   if (!test.from) {
     const auto& packing = campaign.preparation;
     const double compression = std::log(packing.nu / packing.nu_gas) / 3 / packing.rate;

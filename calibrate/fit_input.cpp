@@ -79,10 +79,15 @@ TestRecord read_record(const fs::path& dir, Role role) {
   return test;
 }
 
-bool under_stress_control(const fs::path& dir) {
-  const fs::path scene = dir / "scene.json";
+/// Why a record is no matter for fits and predictions; empty if it is.
+std::string why_left_out(const fs::path& dir) {
+  const fs::path scene = dir / "scene.json", provenance = dir / "provenance.json";
   Reader reader(load_json(scene), scene.string());
-  return Path::read(reader.object("path")).by_stress();
+  if (Path::read(reader.object("path")).by_stress())
+    return "its path is under stress control, and the law follows strains";
+  if (!fs::exists(provenance)) return "";
+  const Json json = load_json(provenance);
+  return json.contains("cut_short") ? json["cut_short"].get<std::string>() : "";
 }
 
 RecordFolder read_campaign(const fs::path& dir) {
@@ -96,6 +101,10 @@ RecordFolder read_campaign(const fs::path& dir) {
       const fs::path record = dir / "records" / name;
       if (!fs::exists(record / "record.csv")) {
         out.left_out.push_back({name, test.role, "there is no record of it"});
+        continue;
+      }
+      if (const std::string why = why_left_out(record); !why.empty()) {
+        out.left_out.push_back({name, test.role, why});
         continue;
       }
       out.tests.push_back(read_record(record, test.role));
@@ -121,9 +130,8 @@ RecordFolder read_folder(const fs::path& dir) {
   }
   std::sort(found.begin(), found.end());
   for (const fs::path& record : found) {
-    if (under_stress_control(record))
-      out.left_out.push_back({record.filename().string(), Role::fit,
-                              "its path is under stress control, and the law follows strains"});
+    if (const std::string why = why_left_out(record); !why.empty())
+      out.left_out.push_back({record.filename().string(), Role::fit, why});
     else
       out.tests.push_back(read_record(record, Role::fit));
   }

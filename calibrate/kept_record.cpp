@@ -39,14 +39,15 @@ void check_kept_record(const fs::path& dir, const Json& planned) {
     // defaults are what it was run with.
     const dem::Scene kept = dem::Scene::read(Reader(load_json(scene), scene), dir);
     if (const auto differs = first_difference(kept.to_json(dir), wanted.to_json(dir)); !differs.empty())
-      throw Error(scene, "", "is another scene than the campaign's (" + differs + ")");
-    load_json(dir / "provenance.json");
+      throw Error(scene, "", "is another scene than is wanted (" + differs + ")");
+    const bool cut_short = load_json(dir / "provenance.json").contains("cut_short");
     const std::string table = (dir / "record.csv").string();
     std::vector<std::string> columns = record_columns();
     for (const auto& column : dem::observe::columns(wanted.measure.observe)) columns.push_back(column);
     const Record record = Record::read_csv(table, columns);
     for (const auto& file : dem::observe::tables(wanted.measure.observe))
       Record::read_csv(dir / file, {"row"});
+    if (cut_short && record.rows() <= wanted.record_rows()) return;
     if (record.rows() != wanted.record_rows())
       throw Error(table, "",
                   "must have " + std::to_string(wanted.record_rows()) + " rows, got " +

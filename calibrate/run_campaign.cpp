@@ -98,6 +98,8 @@ class Runner {
 void Runner::clear() {
   for (std::size_t i = 0; i < jobs_.size(); ++i) {
     const fs::path part = folder_.part(jobs_[i].record);
+    if (!folder_.has_record(jobs_[i].record) && dem::has_whole_record(part))
+      fs::rename(part, folder_.record(jobs_[i].record));  // killed before it could do so
     const bool made = folder_.has_record(jobs_[i].record);
     if (!made && dem::has_checkpoint(part))
       dem::check_checkpoint(part, dem::Scene::read(Reader(jobs_[i].scene, jobs_[i].record), part));

@@ -16,6 +16,8 @@ struct LinearContact {
   double force(double overlap, double closing) const { return k * overlap + gamma * closing; }
   /// Elastic energy, ug mm^2/us^2.
   double energy(double overlap) const { return 0.5 * k * overlap * overlap; }
+  /// Whether the force depends on `closing`; where it does not, the loops leave velocities alone.
+  bool damped() const { return gamma != 0; }
   /// d(force)/d(overlap), ug/us^2.
   double stiffness(double /*overlap*/) const { return k; }
 

@@ -72,11 +72,11 @@ void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& s
 }
 
 void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
-           const AfterStep& after_step) {
+           const AfterStep& after_step, const std::atomic<bool>* stop) {
   if (leg.controlled())
     follow_controlled(dynamics, leg, plan, state, after_step);
   else if (leg.minimises())
-    follow_quasistatic(dynamics, leg, plan, state, after_step);
+    follow_quasistatic(dynamics, leg, plan, state, after_step, stop);
   else if (leg.mode == Mode::relax)
     relax(dynamics, leg, plan, state, after_step);
   else

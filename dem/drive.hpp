@@ -1,6 +1,7 @@
 // Drives the box and its grains along one leg of a path.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 
@@ -55,6 +56,7 @@ struct ControlState {
 /// Whatever drives a leg keeps its state here, so that the leg can be left after any step and gone on with.
 struct LegState {
   std::uint64_t step = 0;           ///< steps taken; 0: the leg has not begun
+  bool entered = false;             ///< whether what is recorded before its first step has been
   Mat3 start_edges;                 ///< H where it began, mm
   double kinetic_at_start = 0;      ///< for relax, ug mm^2/us^2
   double eps_vol = 0, eps_dev = 0;  ///< of the path where it began
@@ -64,8 +66,8 @@ struct LegState {
 
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {
-    archive(self.step, self.start_edges, self.kinetic_at_start, self.eps_vol, self.eps_dev, self.axis,
-            self.control);
+    archive(self.step, self.entered, self.start_edges, self.kinetic_at_start, self.eps_vol, self.eps_dev,
+            self.axis, self.control);
   }
 };
 
@@ -87,9 +89,10 @@ void follow(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& 
 void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
            const AfterStep& after_step);
 
-/// A whole leg, however it is followed.
+/// A whole leg, however it is followed. `stop` is for legs whose steps take long; others are left by
+/// `after_step` alone.
 void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
-           const AfterStep& after_step);
+           const AfterStep& after_step, const std::atomic<bool>* stop = nullptr);
 void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan);
 
 }  // namespace grainlaw::dem

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "grainlaw/dem/advance.hpp"
 #include "grainlaw/dem/forces.hpp"
@@ -21,6 +22,15 @@ double time_step(const Material& material, double smallest_radius, double fracti
     throw Error("the contact of two grains of radius " + to_text(smallest_radius) +
                 " mm is overdamped and has no finite duration; gamma must be smaller");
   return fraction * duration;
+}
+
+double step_of_contact_error(double error) {
+  double y = std::sqrt(6 * error);  // sin(y)/y = 1 - error, to leading order; then by Newton's steps
+  for (int i = 0; i < 8; ++i) {
+    const double slope = (y * std::cos(y) - std::sin(y)) / (y * y);
+    y -= (std::sin(y) / y - 1 + error) / slope;
+  }
+  return 2 / std::numbers::pi * std::sin(y);
 }
 
 Dynamics::Dynamics(const Material& material, const State& state, int threads)

@@ -2,8 +2,10 @@
 // background.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "grainlaw/dem/archive.hpp"
@@ -108,5 +110,14 @@ class Dynamics {
 
 /// A time step: `fraction` of the contact duration of two grains of the smallest radius present, us.
 double time_step(const Material& material, double smallest_radius, double fraction);
+
+/// How much too short an undamped contact lasts at steps of this fraction of its duration t_c, as a share of
+/// t_c. Velocity Verlet turns an oscillation of frequency pi/t_c into one of (2/dt) asin(pi dt/(2 t_c)).
+inline double contact_error_of(double fraction) {
+  const double half = std::numbers::pi / 2 * fraction;
+  return 1 - half / std::asin(half);
+}
+/// Its inverse: the fraction of t_c at which a contact lasts too short by a share `error`, in (0, 0.3].
+double step_of_contact_error(double error);
 
 }  // namespace grainlaw::dem

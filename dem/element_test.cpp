@@ -159,13 +159,15 @@ void ElementTest::walk() {
   const Stage& stage = stages_[place_.stage];
   watch_.enter(stage.name, announced, place_.leg.step * stage.passes_per_step());
   recorder_.enter(dynamics_, stage, place_.leg);
+  place_.leg.entered = true;
   try {
-    drive(dynamics_, stage.leg, stage.stepping, place_.leg, [&](std::uint64_t) {
+    const auto after_step = [&](std::uint64_t) {
       recorder_.after_step(dynamics_, stage, place_.leg);
       if (!watch_.step(stage.passes_per_step(), place_.leg.passes)) return false;
       if (watch_.checkpoint_due()) write_checkpoint();
       return true;
-    });
+    };
+    drive(dynamics_, stage.leg, stage.stepping, place_.leg, after_step, watch_.stop());
   } catch (const Error& error) {
     if (!stage.leg.minimises()) throw;
     return cut_short(error.what());
@@ -239,6 +241,7 @@ void ElementTest::write_record(const RunSummary& summary) const {
   provenance.particle_steps = summary.particle_steps;
   provenance.time_step = longest_.path;
   provenance.warnings = summary.warnings;
+  provenance.cut_short = summary.cut_short;
   write_file(out_dir_ / "provenance.json", provenance.to_json().dump(2) + "\n");
   for (const auto& table : recorder_.tables()) table.rows.write_csv(out_dir_ / table.file);
   recorder_.record().write_csv(out_dir_ / "record.csv");
@@ -262,6 +265,10 @@ void check_directory(const std::filesystem::path& dir) {
 }
 
 }  // namespace
+
+bool has_whole_record(const std::filesystem::path& dir) {
+  return !has_checkpoint(dir) && std::filesystem::exists(dir / "record.csv");
+}
 
 RunSummary run_element_test(const Scene& scene, const std::filesystem::path& out_dir, const RunHooks& hooks) {
   if (has_checkpoint(out_dir))

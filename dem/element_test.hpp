@@ -31,4 +31,8 @@ struct RunSummary {
 RunSummary run_element_test(const Scene& scene, const std::filesystem::path& out_dir,
                             const RunHooks& hooks = {});
 
+/// Whether `dir` holds a record whose test came to its end: record.csv is written last, and then checkpoints
+/// go.
+bool has_whole_record(const std::filesystem::path& dir);
+
 }  // namespace grainlaw::dem

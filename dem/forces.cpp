@@ -20,6 +20,10 @@ namespace grainlaw::dem::HWY_NAMESPACE {
 static_assert(GroupedPairs::width % lanes == 0 && CrossingPairs::width % lanes == 0);
 constexpr std::size_t second = lanes - 4;  // from a grain to the one in the other half of its vector
 
+/// What of the motion the force depends on: nothing where the law is not damped; else the grains' velocities,
+/// and the box's gradient, which has a diagonal only or is full.
+enum class Motion { none, straight, tilted };
+
 /// What the loops need beside the grains.
 struct Constants {
   LinearContact law;
@@ -29,25 +33,27 @@ struct Constants {
 };
 
 /// Force over distance of as many pairs as there are lanes; zero where grains do not touch. Of a grain with
-/// itself, which fills up a list, it is finite and the branch zero. Without `tilted` the velocity gradient
-/// has a diagonal only.
-template <bool tilted>
+/// itself, which fills up a list, it is finite and the branch zero.
+template <Motion of>
 HWY_INLINE Wide strength_of(const Constants& c, const Wide (&branch)[4], const Wide (&velocity)[4]) {
-  Wide x, y, z, reach, u, v, w, unused;
+  Wide x, y, z, reach;
   transpose(branch, x, y, z, reach);
-  transpose(velocity, u, v, w, unused);
-  if constexpr (tilted) {
-    u = mul_add(c.gxy, y, mul_add(c.gxz, z, u));
-    v = mul_add(c.gyz, z, v);
-  }
   // Root and quotient do not wait for each other.
   const Wide squared = larger(wide(1e-60), mul_add(x, x, mul_add(y, y, z * z)));
   const Wide distance = root(squared), inverse = distance * (wide(1) / squared), overlap = reach - distance;
-  const Wide parting =
-      mul_add(x, mul_add(c.gx, x, u), mul_add(y, mul_add(c.gy, y, v), z * mul_add(c.gz, z, w)));
-  alignas(64) double overlaps[lanes], closing[lanes], forces[lanes];
+  alignas(64) double overlaps[lanes], closing[lanes]{}, forces[lanes];
   store(overlap, overlaps);
-  store(wide(0) - parting * inverse, closing);
+  if constexpr (of != Motion::none) {
+    Wide u, v, w, unused;
+    transpose(velocity, u, v, w, unused);
+    if constexpr (of == Motion::tilted) {
+      u = mul_add(c.gxy, y, mul_add(c.gxz, z, u));
+      v = mul_add(c.gyz, z, v);
+    }
+    const Wide parting =
+        mul_add(x, mul_add(c.gx, x, u), mul_add(y, mul_add(c.gy, y, v), z * mul_add(c.gz, z, w)));
+    store(wide(0) - parting * inverse, closing);
+  }
   for (std::size_t k = 0; k < lanes; ++k) forces[k] = c.law.force(overlaps[k], closing[k]);
   return where_not_negative(overlap, load_wide(forces) * inverse);
 }
@@ -65,7 +71,7 @@ HWY_INLINE void act(Wide strength, const Wide (&branch)[4], Wide (&total)[4], co
 }
 
 /// Each group of grains stays in registers, places, velocities and forces, while it meets its partners.
-template <bool tilted>
+template <Motion of>
 void add_forces_within(const Constants& constants, const Quad* place, const Quad* motion, const Groups& list,
                        Quad* force) {
   for (const GroupedPairs::Group& group : list.groups)
@@ -74,7 +80,7 @@ void add_forces_within(const Constants& constants, const Quad* place, const Quad
       Wide place_i[4], motion_i[4], total[4];
       for (std::size_t k = 0; k < 4; ++k) {
         place_i[k] = rows(place[grain[k]], place[grain[k + second]]);
-        motion_i[k] = rows(motion[grain[k]], motion[grain[k + second]]);
+        if constexpr (of != Motion::none) motion_i[k] = rows(motion[grain[k]], motion[grain[k + second]]);
         total[k] = wide(0);
       }
       const std::uint32_t* const end = list.partner + group.last;
@@ -82,9 +88,10 @@ void add_forces_within(const Constants& constants, const Quad* place, const Quad
         Wide branch[4], velocity[4];
         for (std::size_t k = 0; k < 4; ++k) {
           branch[k] = mul_sub_from(constants.apart, rows(place[j[k]], place[j[k + second]]), place_i[k]);
-          velocity[k] = motion_i[k] - rows(motion[j[k]], motion[j[k + second]]);
+          if constexpr (of != Motion::none)
+            velocity[k] = motion_i[k] - rows(motion[j[k]], motion[j[k + second]]);
         }
-        const Wide strength = strength_of<tilted>(constants, branch, velocity);
+        const Wide strength = strength_of<of>(constants, branch, velocity);
         act<0>(strength, branch, total, j, force);
         act<1>(strength, branch, total, j, force);
         act<2>(strength, branch, total, j, force);
@@ -109,7 +116,7 @@ HWY_INLINE void act_on_both(Wide strength, const Wide (&branch)[4], const Crossi
   }
 }
 
-template <bool tilted>
+template <Motion of>
 void add_forces_across(const Constants& constants, const Quad* place, const Quad* motion,
                        const CrossingPairs& list, const Quad* shifts, Quad* force) {
   for (std::size_t p = 0; p < list.pairs.size(); p += lanes) {
@@ -119,9 +126,10 @@ void add_forces_across(const Constants& constants, const Quad* place, const Quad
       const CrossingPairs::Pair &a = pair[k], &b = pair[k + second];
       branch[k] = mul_sub_from(constants.apart, rows(place[a.j], place[b.j]), rows(place[a.i], place[b.i])) -
                   rows(shifts[a.image], shifts[b.image]);
-      velocity[k] = rows(motion[a.i], motion[b.i]) - rows(motion[a.j], motion[b.j]);
+      if constexpr (of != Motion::none)
+        velocity[k] = rows(motion[a.i], motion[b.i]) - rows(motion[a.j], motion[b.j]);
     }
-    const Wide strength = strength_of<tilted>(constants, branch, velocity);
+    const Wide strength = strength_of<of>(constants, branch, velocity);
     act_on_both<0>(strength, branch, pair, force);
     act_on_both<1>(strength, branch, pair, force);
     act_on_both<2>(strength, branch, pair, force);
@@ -129,7 +137,7 @@ void add_forces_across(const Constants& constants, const Quad* place, const Quad
   }
 }
 
-template <bool tilted>
+template <Motion of>
 void add_to_each(const LinearContact& law, const Grains& grains, const Mat3& gradient, const Groups& within,
                  const CrossingPairs& crossing, const Quad* shifts, Quad* force) {
   const auto both = [&](std::size_t a, std::size_t b) { return wide(gradient(a, b) + gradient(b, a)); };
@@ -138,16 +146,15 @@ void add_to_each(const LinearContact& law, const Grains& grains, const Mat3& gra
       both(0, 1)};
   const Quad* const place = grains.place.data();
   const Quad* const motion = grains.motion.data();
-  add_forces_within<tilted>(constants, place, motion, within, force);
-  add_forces_across<tilted>(constants, place, motion, crossing, shifts, force);
+  add_forces_within<of>(constants, place, motion, within, force);
+  add_forces_across<of>(constants, place, motion, crossing, shifts, force);
 }
 
 void add_forces(const LinearContact& law, const Grains& grains, const Cell& cell, const Groups& within,
                 const CrossingPairs& crossing, const Quad* shifts, Quad* force) {
-  if (cell.tilted())
-    add_to_each<true>(law, grains, cell.gradient(), within, crossing, shifts, force);
-  else
-    add_to_each<false>(law, grains, cell.gradient(), within, crossing, shifts, force);
+  const auto add = cell.tilted() ? add_to_each<Motion::tilted> : add_to_each<Motion::straight>;
+  (law.damped() ? add : add_to_each<Motion::none>)(law, grains, cell.gradient(), within, crossing, shifts,
+                                                   force);
 }
 
 }  // namespace grainlaw::dem::HWY_NAMESPACE

@@ -44,6 +44,8 @@ bool Goal::ends(const StaticPacking& packing, MinimiseResult& result) const {
     result.outcome = Outcome::balanced;
   else if (balance.jammed && balance.residual <= rounding_floor(packing, balance))
     result.outcome = Outcome::rounding;
+  else if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed))
+    result.outcome = Outcome::stopped;
   else {
     result.outcome = Outcome::gave_up;
     const bool at_rest = balance.largest_net_force == 0;  // and load without a backbone: nothing would move
@@ -65,10 +67,11 @@ std::string MinimiseResult::text() const {
     case Outcome::rounding:
       return "in balance as far as rounding allows: " + reached;
     case Outcome::gave_up:
+    case Outcome::stopped:
       break;
   }
-  return "not in balance after " + std::to_string(evaluations + products) +
-         " passes over the contacts: " + reached;
+  return std::string(outcome == Outcome::stopped ? "stopped" : "not in balance") + " after " +
+         std::to_string(evaluations + products) + " passes over the contacts: " + reached;
 }
 
 namespace {

@@ -2,6 +2,7 @@
 // grains.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 
@@ -24,13 +25,16 @@ struct MinimiseOptions {
   double zero_overlap = 1e-9;
   /// Passes over the contacts (for forces, or for a product with the Hessian) after which to give up.
   std::uint64_t most_passes = 100'000;
+  /// When it turns true, looked at after every hundred steps or so: leaves the grains where they are.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 enum class Outcome {
   balanced,  ///< the residual is reached
   unjammed,  ///< no backbone is left, and no overlap: energy zero
   rounding,  ///< the residual is below what rounding of the places leaves, and that is reached
-  gave_up    ///< most_passes came first
+  gave_up,   ///< most_passes came first
+  stopped    ///< it was told to stop
 };
 
 struct MinimiseResult {

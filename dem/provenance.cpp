@@ -47,19 +47,21 @@ double Provenance::particle_steps_per_s() const {
 }
 
 Json Provenance::to_json() const {
-  return {{"version", version},
-          {"commit", commit},
-          {"seed", seed ? Json(*seed) : Json(nullptr)},
-          {"compiler", compiler},
-          {"simd", simd},
-          {"started", started},
-          {"wall_time_s", wall_time_s},
-          {"particle_steps", particle_steps},
-          {"particle_steps_per_s", particle_steps_per_s()},
-          {"k_star", k_star},
-          {"k_star_kPa", k_star_kPa},
-          {"time_step", time_step},
-          {"warnings", warnings}};
+  Json json{{"version", version},
+            {"commit", commit},
+            {"seed", seed ? Json(*seed) : Json(nullptr)},
+            {"compiler", compiler},
+            {"simd", simd},
+            {"started", started},
+            {"wall_time_s", wall_time_s},
+            {"particle_steps", particle_steps},
+            {"particle_steps_per_s", particle_steps_per_s()},
+            {"k_star", k_star},
+            {"k_star_kPa", k_star_kPa},
+            {"time_step", time_step},
+            {"warnings", warnings}};
+  if (!cut_short.empty()) json["cut_short"] = cut_short;
+  return json;
 }
 
 }  // namespace grainlaw::dem

@@ -24,6 +24,8 @@ struct Provenance {
   double k_star_kPa = 0;
   double time_step = 0;  ///< us, during the path
   std::vector<std::string> warnings;
+  /// A sentence, where the path could not be followed to its end: the record has the rows up to there.
+  std::string cut_short;
 
   /// All that is known when a test begins; `started` is now. The engine adds the effort at the end.
   static Provenance begin(const Scene& scene);

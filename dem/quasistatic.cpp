@@ -23,23 +23,26 @@ StepPlan plan_increments(const Leg& leg, std::uint64_t rows) {
 }
 
 void follow_quasistatic(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
-                        const AfterStep& after_step) {
+                        const AfterStep& after_step, const std::atomic<bool>* stop) {
   if (state.step == 0) state.start_edges = dynamics.cell().edges();
   const Drive box(state.start_edges, leg);
   MinimiseOptions options;
   options.residual = *leg.residual;
   options.most_passes = most_passes;
+  options.stop = stop;
   while (state.step < plan.steps) {
-    const std::uint64_t n = ++state.step;
+    const std::uint64_t n = state.step + 1;
     // From the state alone, so that a run that goes on from a checkpoint does the same.
     StaticPacking packing(dynamics.material(), dynamics.state());
     if (leg.drives())
       packing.deform(box.edges(n == plan.steps ? leg.duration : static_cast<double>(n) * plan.dt));
     const MinimiseResult result = minimise(packing, options);
+    if (result.outcome == Outcome::stopped) return;
     if (result.outcome == Outcome::gave_up)
       throw Error("the energy was not minimised in increment " + std::to_string(n) + " of " +
                   std::to_string(plan.steps) + ": " + result.text() +
                   (result.balance.jammed ? "; residual must be larger" : ""));
+    state.step = n;
     state.passes = result.evaluations + result.products;
     dynamics = Dynamics(dynamics.material(), packing.state(), dynamics.threads());
     if (!after_step(n)) return;

@@ -42,11 +42,11 @@ void Recorder::begin_path(const Dynamics& dynamics) {
 
 void Recorder::enter(const Dynamics& dynamics, const Stage& stage, const LegState& leg) {
   const auto after = [&leg](const Steps& steps) {
-    return leg.step == 0 ? steps.begin() : std::upper_bound(steps.begin(), steps.end(), leg.step);
+    return leg.entered ? std::upper_bound(steps.begin(), steps.end(), leg.step) : steps.begin();
   };
   next_row_ = after(stage.rows);
   next_snapshot_ = after(stage.snapshots);
-  if (leg.step > 0) return;
+  if (leg.entered) return;
   rows_done_ = 0;
   wanted_.clear();
   for (std::uint64_t i = 0; i < requests_.size(); ++i)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "grainlaw/dem/dynamics.hpp"
 #include "grainlaw/dem/observe/names.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/words.hpp"
@@ -20,6 +21,7 @@ constexpr std::int64_t most_rows = 100'000, most_segments = 1'000'000;
 constexpr double fastest = 1e6;       // mm/us, 1/us: far beyond sense, so that nothing overflows
 constexpr double densest_gas = 0.45;  ///< random placement without overlap slows down without limit beyond
 constexpr double largest_step = 0.2;  ///< of the smallest contact duration
+constexpr double largest_contact_error = 0.0169;  ///< at that step
 constexpr double radius_slack =
     0.01;  ///< mean and spread of radii may differ so much from the material's, in r_mean
 constexpr double target_slack = 1e-9;  ///< a target equal to an end of its segment up to rounding is inside
@@ -187,15 +189,25 @@ Json FromSnapshot::to_json(const std::filesystem::path& dir) const {
   return json;
 }
 
+/// A share of the contact duration, or {"error": x}: the step at which a contact lasts too short by a share
+/// x.
+double read_step(Reader& reader, const std::string& key, double fallback) {
+  if (!reader.has(key) || !reader.raw(key).is_object())
+    return reader.number(key, above_up_to(0, largest_step), fallback);
+  Reader wanted = reader.object(key);
+  const double error = wanted.number("error", above_up_to(0, largest_contact_error));
+  wanted.finish();
+  return step_of_contact_error(error);
+}
+
 Measure Measure::read(Reader reader, const Measure& fallback) {
   Measure measure = fallback;
   measure.rows = reader.integer("rows", 1, most_rows, fallback.rows);
   if (reader.has("snapshots")) measure.snapshots.clear();
   for (Reader& request : reader.objects_or_none("snapshots"))
     measure.snapshots.push_back(read_request(request));
-  measure.time_step = reader.number("time_step", above_up_to(0, largest_step), fallback.time_step);
-  measure.time_step_gas =
-      reader.number("time_step_gas", above_up_to(0, largest_step), fallback.time_step_gas);
+  measure.time_step = read_step(reader, "time_step", fallback.time_step);
+  measure.time_step_gas = read_step(reader, "time_step_gas", fallback.time_step_gas);
   measure.observe = read_observers(reader, fallback.observe);
   reader.finish();
   return measure;

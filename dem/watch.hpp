@@ -15,7 +15,8 @@ struct RunHooks {
   /// going on ("compress the gas", "d2 (2 of 3)"). Relaxations may end early, so the share can jump ahead; it
   /// never falls.
   std::function<void(double fraction_done, const std::string& stage)> progress;
-  /// When it turns true the test stops within some 10 ms, or after the increment of a quasistatic leg.
+  /// When it turns true the test stops within some 10 ms; on a quasistatic leg where its last increment
+  /// ended.
   const std::atomic<bool>* stop = nullptr;
   /// Seconds from one checkpoint to the next; 0: one at every look, some ten milliseconds apart.
   double checkpoint_every = 60;
@@ -38,6 +39,7 @@ class Watch {
   bool checkpoint_due() { return std::exchange(checkpoint_due_, false); }
   /// The stage is over, perhaps before its planned end.
   void leave() { done_ = stage_end_; }
+  const std::atomic<bool>* stop() const { return hooks_.stop; }
   bool stopped() const { return hooks_.stop != nullptr && hooks_.stop->load(std::memory_order_relaxed); }
   std::uint64_t particle_steps() const { return taken_ * grains_; }
 

@@ -186,11 +186,10 @@ std::vector<Leg> Path::legs(double nu) const {
   return nominal_legs(nu);
 }
 
-std::vector<Leg> Path::nominal_legs(double nu) const {
+std::vector<Leg> Path::nominal_legs(double nu, bool certain) const {
   std::vector<Leg> legs;
   legs.reserve(segments.size());
   Waypoint at(nu);
-  bool certain = true;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     certain = certain && !segments[i].control.by_stress();
     Leg leg = this->leg(i, at, certain);

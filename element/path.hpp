@@ -127,8 +127,9 @@ struct Path {
   /// on where the segment begins.
   Leg leg(std::size_t i, const Waypoint& from, bool certain = true) const;
   /// All legs as if servos added no strain, for estimates and signs: a leg that would then have nothing to do
-  /// is empty. Throws Error as legs() does, up to the first segment under stress control.
-  std::vector<Leg> nominal_legs(double nu) const;
+  /// is empty. Throws Error as legs() does, up to the first segment under stress control; unless `nu` is
+  /// `certain`, nothing that depends on it.
+  std::vector<Leg> nominal_legs(double nu, bool certain = true) const;
   /// Whether any segment is under stress control.
   bool by_stress() const;
   std::string file;  ///< for error messages

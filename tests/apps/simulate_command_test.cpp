@@ -145,6 +145,21 @@ TEST_F(Simulate, WhatAKilledRunLeftIsCleared) {
   EXPECT_THAT(listing("out"), ElementsAre("x", "x/provenance.json", "x/record.csv", "x/scene.json"));
 }
 
+TEST_F(Simulate, KilledBeforeItNamesItsRecordItOnlyNamesIt) {
+  write("s.json", scene("200"));
+  ASSERT_EQ(run({"simulate", "s.json", "-o", "x"}).status, 0);
+  fs::rename(folder / "x", folder / "x.part");
+  const std::string record = read("x.part/record.csv");
+  EXPECT_TRUE(
+      refuses(run({"simulate", "s.json", "-o", "x"}), {"holds an interrupted test; go on with --resume"}));
+  write("other.json", scene("210"));
+  EXPECT_TRUE(
+      refuses(run({"simulate", "other.json", "-o", "x", "--resume"}), {"is another scene", "remove"}));
+  EXPECT_EQ(run({"simulate", "s.json", "-o", "x", "--resume"}).status, 0);
+  EXPECT_EQ(read("x/record.csv"), record);
+  EXPECT_FALSE(fs::exists(folder / "x.part"));
+}
+
 TEST_F(Simulate, AFullDiskKeepsTheLastCheckpoint) {
   const auto running = start_long();
   running->send(SIGINT);

@@ -1,7 +1,7 @@
 // Particle-steps per second of the engine, in a jammed packing under D2 flow, list updates included: of
 // processor time, or with several threads of the clock on the wall. With `pair`, one run on two threads
 // against two runs side by side, in turns: `share` is what the first makes of the second. Usage:
-// grainlaw_bench_dem_step [COUNT] [REPEATS] [TIME_STEP (over t_c)] [THREADS | pair]
+// grainlaw_bench_dem_step [COUNT] [REPEATS] [TIME_STEP (over t_c)] [THREADS | pair] [W (3)] [GAMMA (1000)]
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -71,9 +71,11 @@ void print_speeds(const dem::Dynamics& dynamics, double fraction, std::vector<do
   std::sort(speeds.begin(), speeds.end());
   const auto m = dynamics.measure();
   std::printf(
-      "N = %zu, t_c/%.0f, %d threads: median %.2f M particle-steps/s (%.2f-%.2f); C = %.3f, nu = %.3f\n",
-      dynamics.count(), 1 / fraction, dynamics.threads(), speeds[speeds.size() / 2], speeds.front(),
-      speeds.back(), m.C, m.nu);
+      "N = %zu, w = %g, gamma = %g, t_c/%.0f, %d threads: median %.2f M particle-steps/s (%.2f-%.2f), %.1f M "
+      "contact-steps/s; C = %.3f, nu = %.3f\n",
+      dynamics.count(), dynamics.material().w, dynamics.material().gamma, 1 / fraction, dynamics.threads(),
+      speeds[speeds.size() / 2], speeds.front(), speeds.back(), speeds[speeds.size() / 2] * m.C / 2, m.C,
+      m.nu);
 }
 
 void time_one(dem::Dynamics dynamics, double fraction, int repeats) {
@@ -126,7 +128,9 @@ int main(int words, char** word) {
   const std::int64_t count = words > 1 ? std::atoll(word[1]) : 9261;
   const int repeats = words > 2 ? std::atoi(word[2]) : 5;
   const double fraction = words > 3 ? std::atof(word[3]) : 0.1;
-  const Material material;
+  Material material;
+  if (words > 5) material.w = std::atof(word[5]);
+  if (words > 6) material.gamma = std::atof(word[6]);
   const dem::State state = jammed(material, count);
   if (words > 4 && std::strcmp(word[4], "pair") == 0)
     time_pair(material, state, fraction, repeats);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "campaign_examples.hpp"
+#include "grainlaw/calibrate/campaign_plan.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::calibrate {
@@ -184,6 +185,34 @@ TEST(Campaign, RefusesPathsThatCannotBeFollowed) {
               StartsWith("c.json: tests[0].path.start.nu: means nothing in a campaign"));
   EXPECT_THAT(path(R"({"segments": [{"mode": "iso", "controls": {"nu": 1.5}}]})"),
               HasSubstr("tests[0].path.segments[0].controls.nu: must be > 0 and < 1, got 1.5"));
+}
+
+// iso, then constant P from it, then shear from where the servo has led.
+const std::string constant_p =
+    R"({"name": "cp", "role": "predict", "from": {"test": "iso", "nu": 0.7},
+        "path": {"segments": [{"mode": "constant_p", "amount": 0.05}]}})";
+
+TEST(Campaign, TakesPathsUnderStressControlAndStatesAfterThem) {
+  const Campaign campaign = campaign_of(with_tests(iso + "," + constant_p + "," + d2(R"({"test": "cp"})")));
+  EXPECT_TRUE(campaign.test("cp").nu_known);
+  EXPECT_DOUBLE_EQ(campaign.test("cp").nu_start, 0.7);
+  const CampaignTest& after = campaign.test("d2");
+  EXPECT_FALSE(after.nu_known);
+  ASSERT_TRUE(after.from);
+  EXPECT_EQ(after.from->segment, 0U);
+  EXPECT_FALSE(after.from->nu);
+  for (const Job& job : plan(campaign)) EXPECT_GT(job.particle_steps, 0) << job.record;
+}
+
+TEST(Campaign, RefusesToGuessWhatAServoDoes) {
+  EXPECT_THAT(
+      refusal(with_tests(iso + "," + constant_p + "," + d2(R"({"test": "cp", "nu": 0.7})"))),
+      HasSubstr(
+          "tests[2].from.nu: must be left out, got 0.7: how dense the grains are in segment 0 of \"cp\""));
+  std::string fitted = constant_p;
+  fitted.replace(fitted.find("predict"), 7, "fit");
+  EXPECT_THAT(refusal(with_tests(iso + "," + fitted)),
+              HasSubstr("tests[1].role: must be predict where the path is under stress control, got fit"));
 }
 
 TEST(Campaign, RefusesSnapshotsOffThePath) {

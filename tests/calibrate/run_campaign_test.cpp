@@ -88,6 +88,30 @@ TEST_F(RunCampaign, MakesEveryRecordAfterTheOneItStartsFrom) {
   EXPECT_FALSE(fs::exists(dir / "failures.json"));
 }
 
+TEST_F(RunCampaign, ARecordThatWasOnlyNotNamedIsKept) {
+  run_campaign(campaign, open(), options());
+  fs::rename(dir / "records/iso-s1", dir / "records/iso-s1.part");
+  ran.clear();
+  const auto again = run_campaign(campaign, open(CampaignFolder::Use::resume), options());
+  EXPECT_EQ(again.reused, 6u);
+  EXPECT_TRUE(ran.empty());
+  EXPECT_TRUE(fs::exists(dir / "records/iso-s1/record.csv"));
+}
+
+TEST_F(RunCampaign, ARecordThatWasCutShortIsKept) {
+  auto o = options();
+  o.run_test = [&](const dem::Scene& scene, const fs::path& part, const dem::RunHooks&) {
+    auto summary = write_record(scene, part);
+    Record few(record_columns());
+    few.append(std::vector<double>(record_columns().size(), 0.5));
+    few.write_csv(part / "record.csv");
+    write_file(part / "provenance.json", R"({"cut_short": "the target is out of reach"})");
+    return summary;
+  };
+  run_campaign(campaign, open(), o);
+  EXPECT_EQ(run_campaign(campaign, open(CampaignFolder::Use::resume), options()).reused, 6u);
+}
+
 TEST_F(RunCampaign, RunsAsManyAtATimeAsAsked) {
   auto o = options();
   std::atomic<int> now{0}, most{0};
@@ -324,7 +348,7 @@ TEST_F(RunCampaign, AKeptRecordMustBeWholeAndOfItsScene) {
                 fs::copy_file(records / "d2-0.75-s1/scene.json", records / "d2-0.7-s1/scene.json",
                               fs::copy_options::overwrite_existing);
               }),
-              AllOf(HasSubstr("d2-0.7-s1/scene.json: is another scene than the campaign's (preparation.nu: "
+              AllOf(HasSubstr("d2-0.7-s1/scene.json: is another scene than is wanted (preparation.nu: "
                               "0.75 there, 0.7 here)")));
   EXPECT_THAT(refusal([&] { write_file(records / "iso-s1/provenance.json", "{"); }), HasSubstr("; remove "));
   // A record of an earlier version, which knew no observers, is as good.
@@ -339,7 +363,7 @@ TEST_F(RunCampaign, AKeptRecordMustBeWholeAndOfItsScene) {
                 scene["measure"]["observe"] = {"contacts"};
                 write_file(records / "iso-s1/scene.json", scene.dump());
               }),
-              HasSubstr("is another scene than the campaign's (measure.observe"));
+              HasSubstr("is another scene than is wanted (measure.observe"));
   // Snapshots count only where a test has yet to start from them.
   EXPECT_EQ(refusal([&] { fs::remove(records / "iso-s1/snapshots.h5"); }), "accepted");
   EXPECT_TRUE(ran.empty());

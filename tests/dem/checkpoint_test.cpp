@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include "grainlaw/dem/dynamics.hpp"
 #include "grainlaw/dem/element_test.hpp"
@@ -101,6 +103,32 @@ TEST_F(Checkpoints, AStoppedTestGoesOnAsIfItHadNot) {
   }
   EXPECT_GT(stops, 8);
   expect_same("stopped", "whole");
+}
+
+TEST_F(Checkpoints, AnIncrementMayBeInterrupted) {
+  // Increments that take hundreds of passes, left in their midst, by another thread, after ever longer times.
+  scene = scene_of(R"({
+    "preparation": {"count": 150, "seed": 3, "rate": 1e-3, "relax": {"tolerance": 1e-2, "duration": 100}},
+    "path": {"segments": [
+      {"mode": "iso", "controls": {"nu": 0.72}, "profile": "quasistatic", "increment": 0.01, "residual": 1e-10},
+      {"mode": "d2", "amount": 0.02, "profile": "quasistatic", "increment": 0.01, "residual": 1e-10}]},
+    "measure": {"rows": 2, "time_step": 0.2, "snapshots": [{"segment": 0, "nu": 0.64}, {"segment": 1}]}})");
+  ASSERT_TRUE(run("whole"));
+  int stops = 0;
+  for (std::chrono::microseconds patience{100};; patience = patience * 5 / 4) {
+    std::atomic<bool> stop = false;
+    RunHooks hooks;
+    hooks.stop = &stop;
+    std::jthread other([&](const std::stop_token& over) {
+      const auto end = std::chrono::steady_clock::now() + patience;
+      while (!over.stop_requested() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+      stop = true;
+    });
+    if (!run_element_test(scene, dir / "left", hooks).stopped) break;
+    ++stops;
+  }
+  EXPECT_GT(stops, 5);
+  expect_same("left", "whole");
 }
 
 TEST_F(Checkpoints, ChangeNoDigit) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "grainlaw/element/error.hpp"
 #include "packings.hpp"
@@ -132,6 +133,39 @@ TEST(Collision, StepAsFractionOfContactDuration) {
   Material overdamped;
   overdamped.gamma = 1e6;
   EXPECT_THROW(time_step(overdamped, 0.5, 0.1), Error);
+}
+
+/// Duration of an undamped contact at steps of this fraction of it, over the exact one: its overlaps are an
+/// oscillation whose frequency the last three of them tell, and with it where in the last step they vanish.
+double simulated_duration(const Material& elastic, double fraction) {
+  const double exact = elastic.contact_duration(0.5), dt = fraction * exact;
+  Dynamics dynamics(elastic, test::two_grains(0.5, 0.5, 0.01));
+  dynamics.start(dt, {});
+  std::vector<double> overlap{0};
+  while (overlap.size() == 1 || overlap.back() >= 0) {
+    dynamics.step();
+    overlap.push_back(approach(dynamics).overlap);
+  }
+  const auto last = overlap.end() - 1;
+  const double before = last[-2], at = last[-1], after = last[0];
+  const double phase = std::acos((before + after) / (2 * at));
+  const double rest = std::atan2(at, (at * std::cos(phase) - after) / std::sin(phase)) / phase;
+  return (static_cast<double>(overlap.size() - 2) + rest) * fraction;
+}
+
+// measure.time_step of a wanted error: a contact simulated at that step is too short by as much as was asked.
+TEST(Collision, StepOfAWantedContactError) {
+  Material elastic = without_background();
+  elastic.gamma = 0;
+  for (const double error : {1e-5, 1e-3, 0.01, 0.0169}) {
+    const double fraction = step_of_contact_error(error);
+    EXPECT_NEAR(contact_error_of(fraction), error, 1e-13);
+    EXPECT_NEAR(fraction, std::sqrt(24 * error) / std::numbers::pi, error * fraction);
+    // Places are rounded to 2e-15 mm, a step moves them by 1e-5 mm, and the phase of a step is 0.016 at the
+    // least: to 5e-9 of t_c.
+    EXPECT_NEAR(1 - simulated_duration(elastic, fraction), error, 1e-6 * error + 5e-9);
+  }
+  EXPECT_LT(step_of_contact_error(0.0169), 0.2);
 }
 
 }  // namespace

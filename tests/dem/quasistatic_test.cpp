@@ -79,6 +79,22 @@ TEST(Quasistatic, WhileNoContactOpensOrClosesItIsASlowFlow) {
   EXPECT_NEAR((b[1] - b[0]) - (start[1] - start[0]), change, 1e-3 * change);
 }
 
+TEST(Quasistatic, AnIncrementThatIsStoppedHasNotBegun) {
+  const Material material;
+  Dynamics dynamics = balanced(material);
+  const State before = dynamics.state();
+  const Leg leg = d2(1e-2, 1e-2);
+  LegState state;
+  std::atomic<bool> stop = true;
+  const auto never = [](std::uint64_t) {
+    ADD_FAILURE() << "no increment ends";
+    return true;
+  };
+  follow_quasistatic(dynamics, leg, plan_increments(leg, 1), state, never, &stop);
+  EXPECT_EQ(state.step, 0u);
+  EXPECT_EQ(dynamics.state(), before);
+}
+
 TEST(Quasistatic, RoundingInTheWayIsNoError) {
   const Material material;
   Dynamics dynamics = balanced(material);

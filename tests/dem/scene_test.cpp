@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "grainlaw/dem/dynamics.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::dem {
@@ -48,6 +49,19 @@ TEST(Scene, DefaultsAreThoseOfTheDocumentation) {
   EXPECT_EQ(json["measure"].dump(),
             R"({"rows":100,"snapshots":[],"time_step":0.2,"time_step_gas":0.05,"observe":[]})");
   EXPECT_EQ(json["path"]["segments"].size(), 1u);
+}
+
+TEST(Scene, AStepMayBeChosenByItsError) {
+  const Scene scene = scene_of(with("measure", R"({"time_step": {"error": 1e-3}})"));
+  EXPECT_EQ(scene.measure.time_step, step_of_contact_error(1e-3));
+  EXPECT_NEAR(scene.measure.time_step, 0.0493, 1e-4);
+  EXPECT_EQ(scene.to_json()["measure"]["time_step"], scene.measure.time_step);
+  EXPECT_THAT(refusal(with("measure", R"({"time_step": {"error": 0.02}})")),
+              testing::HasSubstr("measure.time_step.error: must be > 0 and <= 0.0169, got 0.02"));
+  EXPECT_THAT(refusal(with("measure", R"({"time_step_gas": {"error": 0}})")),
+              testing::HasSubstr("measure.time_step_gas.error: must be > 0"));
+  EXPECT_THAT(refusal(with("measure", R"({"time_step": {"wanted": 1e-3}})")),
+              testing::HasSubstr("measure.time_step"));
 }
 
 TEST(Scene, RoundTripOfANewPacking) {
