@@ -14,6 +14,7 @@
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/preparation.hpp"
 #include "grainlaw/dem/random.hpp"
+#include "grainlaw/dem/row_writer.hpp"
 #include "grainlaw/dem/size_distribution.hpp"
 #include "grainlaw/dem/snapshot.hpp"
 
@@ -26,7 +27,7 @@ constexpr std::size_t whole_trial = 1500;       // packings of up to so many gra
 constexpr std::size_t base_grains = 1000;       // larger ones are made of copies of one of about this size
 constexpr std::size_t largest_trial = 200'000;  // beyond, a grain costs the same
 constexpr double trial_seconds = 0.15;          // of steps, at each density
-constexpr std::uint64_t fewest_steps = 40;
+constexpr std::uint64_t fewest_steps = 40, fewest_rows = 5;
 
 /// What is allocated, in bytes.
 double heap_bytes() {
@@ -153,20 +154,24 @@ class Trial {
   }
 
   void rows(const std::vector<std::string>& asked) {
-    const auto velocity = dynamics_.velocities();
-    const Measurement measured = dynamics_.measure();
-    cost_.contacts = static_cast<double>(measured.contacts) / grains_;
-    cost_.row = seconds_of([&] { dynamics_.measure(); }, trial_seconds / 10, 3) / grains_;
-    const SignConvention sign({Leg{}});
+    const Leg leg{};
+    RowWriter writer(material_, {leg}, cost_.nu);
+    const double append = seconds_between_steps([&] { writer.append(dynamics_, 0, 0, 0); });
+    cost_.row = (append + seconds_per_row(writer.record())) / grains_;
+    cost_.contacts = static_cast<double>(dynamics_.measure().contacts) / grains_;
+    const SignConvention sign({leg});
     for (const std::string& name : asked) {
       observe::Observers one({name});
       std::size_t row = 0;
+      std::vector<Quad> velocity;
+      Measurement measured;
+      const auto measure = [&] { velocity = dynamics_.velocities(), measured = dynamics_.measure(); };
       const auto observe = [&] { one.observe(dynamics_, velocity, measured, material_, sign, 0, row++); };
+      measure();
       observe();  // the first has nothing to compare with
-      double seconds = seconds_of(observe, trial_seconds / 10, 3);
-      const auto written = static_cast<double>(row);
+      double seconds = seconds_between_steps(observe, measure);
       for (const auto& table : one.tables())
-        seconds += seconds_of([&] { table.rows.to_csv(); }, 0, 1) / written;
+        seconds += seconds_of([&] { table.rows.to_csv(); }, 0, 1) / static_cast<double>(row);
       cost_.observers.push_back(seconds / grains_);
     }
   }
@@ -174,6 +179,31 @@ class Trial {
   const TrialCost& cost() const { return cost_; }
 
  private:
+  /// Seconds of a call after each step and what comes before it, as in a test that writes rows: with what it
+  /// needs no longer in the nearest caches.
+  template <class Call, class Before>
+  double seconds_between_steps(Call&& call, Before&& before) {
+    double spent = 0;
+    std::uint64_t calls = 0;
+    do {
+      step();
+      before();
+      const double begin = thread_seconds();
+      call();
+      spent += thread_seconds() - begin;
+      ++calls;
+    } while (spent < trial_seconds / 10 || calls < fewest_rows);
+    return spent / static_cast<double>(calls);
+  }
+  template <class Call>
+  double seconds_between_steps(Call&& call) {
+    return seconds_between_steps(call, [] {});
+  }
+  /// Of the text of a table.
+  static double seconds_per_row(const Record& table) {
+    return seconds_of([&] { table.to_csv(); }, 0, 1) / static_cast<double>(table.rows());
+  }
+
   void step() {
     Vec3 length = dynamics_.cell().length();
     for (std::size_t c = 0; c < 3; ++c) length[c] *= std::exp(rate_[c] * dt_);
