@@ -112,7 +112,7 @@ void Dynamics::deal_out() {
   if (!team_) return;
   team_->run([&](int t) {
     const auto k = static_cast<std::size_t>(t);
-    deal(neighbours_.pairs(), count(), k, shares_.size(), shares_[k]);
+    deal(neighbours_.pairs(), count(), k, shares_.size(), force_lanes(), shares_[k]);
   });
 }
 

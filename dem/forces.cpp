@@ -180,6 +180,8 @@ void add_forces(const LinearContact& law, const Grains& grains, const Cell& cell
                                                    force);
 }
 
+std::size_t lanes_here() { return lanes; }
+
 }  // namespace grainlaw::dem::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -187,6 +189,9 @@ HWY_AFTER_NAMESPACE();
 namespace grainlaw::dem {
 
 HWY_EXPORT(add_forces);
+HWY_EXPORT(lanes_here);
+
+std::size_t force_lanes() { return HWY_DYNAMIC_DISPATCH(lanes_here)(); }
 
 void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, Grains& grains) {
   const std::array<Quad, 27> shifts = cell.shifts();
@@ -205,7 +210,7 @@ void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& ce
     HWY_DYNAMIC_DISPATCH(add_forces)
     (law, grains, cell, within, crossing, shifts.data(), share.force.data());
   };
-  add({share.halo.groups, share.halo.partner.data()}, {});
+  add({}, share.halo);
   const std::span<const GroupedPairs::Group> groups = pairs.within.groups;
   add({groups.subspan(share.first_group, share.last_group - share.first_group), pairs.within.partner.data()},
       share.crossing);

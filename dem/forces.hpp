@@ -9,6 +9,9 @@
 
 namespace grainlaw::dem {
 
+/// How many pairs the loops compute at a time.
+std::size_t force_lanes();
+
 /// Fills grains.force from grains.place and grains.motion (Eq. 2.1). The closing velocity of a contact is
 /// that of the true motion: fluctuation plus the affine motion of the box over the branch.
 void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, Grains& grains);

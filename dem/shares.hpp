@@ -15,12 +15,14 @@ namespace grainlaw::dem {
 struct Share {
   std::uint32_t first = 0, last = 0;            ///< its grains
   std::size_t first_group = 0, last_group = 0;  ///< their groups in the list
-  GroupedPairs halo;                            ///< the earlier groups, as far as they have partners in here
+  CrossingPairs halo;                           ///< pairs of earlier groups with partners in here
   CrossingPairs crossing;                       ///< those pairs that have a grain in here
   std::vector<Quad> force;                      ///< of all grains, but right only for its own
 };
 
-/// Share `index` of `shares`, of `grains` grains.
-void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t shares, Share& share);
+/// Share `index` of `shares`, of `grains` grains, for loops that compute so many pairs at a time as `lanes`
+/// (4 or 8): in what order they add forces depends on it.
+void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t shares, std::size_t lanes,
+          Share& share);
 
 }  // namespace grainlaw::dem

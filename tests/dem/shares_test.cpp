@@ -2,10 +2,13 @@
 #include "grainlaw/dem/shares.hpp"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <array>
 #include <cmath>
+#include <set>
 
+#include "grainlaw/dem/forces.hpp"
 #include "grainlaw/dem/thread_pool.hpp"
 #include "packings.hpp"
 
@@ -29,9 +32,19 @@ State flow(int threads) {
   return dynamics.state();
 }
 
+// In what order forces are added depends on the instruction set.
 TEST(Shares, TheirNumberChangesNoBitOfTheMotion) {
-  const State alone = flow(1);
-  for (const int threads : {2, 3}) EXPECT_TRUE(flow(threads) == alone) << threads << " threads";
+  std::set<std::size_t> lanes;
+  for (const std::int64_t target : {HWY_SCALAR, HWY_AVX2, HWY_AVX3}) {
+    if (target != HWY_SCALAR && (hwy::SupportedTargets() & target) == 0) continue;
+    hwy::SetSupportedTargetsForTest(target);
+    if (lanes.insert(force_lanes()).second) {
+      const State alone = flow(1);
+      for (const int threads : {2, 3})
+        EXPECT_TRUE(flow(threads) == alone) << threads << " threads, " << force_lanes() << " lanes";
+    }
+    hwy::SetSupportedTargetsForTest(0);
+  }
 }
 
 TEST(Shares, MoreThreadsThanBlocksOfGrainsDoNoHarm) {
