@@ -37,4 +37,17 @@ void Backbone::find(const ContactNetwork& network, std::size_t grains) {
   if (inside_ > 0) mean_force_ /= static_cast<double>(inside_);
 }
 
+ContactNetwork bearing(const ContactNetwork& all, const Backbone& backbone) {
+  ContactNetwork some;
+  for (std::size_t c = 0; c < all.count; ++c) {
+    if (!backbone.joins(all, c)) continue;
+    some.pairs.push_back(all.pairs[c]);
+    some.normal.push_back(all.normal[c]);
+    some.force.push_back(all.force[c]);
+    some.stiffness.push_back(all.stiffness[c]);
+  }
+  some.count = some.pairs.size();
+  return some;
+}
+
 }  // namespace grainlaw::dem

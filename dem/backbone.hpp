@@ -21,8 +21,12 @@ class Backbone {
   bool joins(const ContactNetwork& network, std::size_t c) const {
     return holds(network.pairs[c].i) && holds(network.pairs[c].j);
   }
-  std::size_t grains() const { return grains_; }     ///< in it
-  std::size_t contacts() const { return inside_; }   ///< between two of them
+  std::size_t grains() const { return grains_; }    ///< in it
+  std::size_t contacts() const { return inside_; }  ///< between two of them
+  /// The fewest contacts that hold a backbone under load in a box at rest: each of its 3 (grains - 1)
+  /// displacements needs one, and forces in balance one more. Below, some displacements meet no stiffness;
+  /// at or above there may still be some, see floppy_modes().
+  std::size_t isostatic() const { return grains_ == 0 ? 0 : 3 * grains_ - 2; }
   double mean_force() const { return mean_force_; }  ///< of these contacts, ug mm/us^2; 0 without any
 
   static constexpr std::uint32_t least_contacts = 4;
@@ -33,5 +37,8 @@ class Backbone {
   std::size_t grains_ = 0, inside_ = 0;
   double mean_force_ = 0;
 };
+
+/// The contacts between grains of the backbone; its energy is left 0.
+ContactNetwork bearing(const ContactNetwork& all, const Backbone& backbone);
 
 }  // namespace grainlaw::dem

@@ -15,10 +15,12 @@ class BlockJacobi {
   /// z = M^-1 r
   void apply(const Field& r, Field& z) const;
 
- private:
   struct Block {
     Quad on, off;  ///< xx, yy, zz | yz, xz, xy, of the inverse
   };
+  const std::vector<Block>& blocks() const { return inverse_; }
+
+ private:
   std::vector<Block> inverse_;
 };
 

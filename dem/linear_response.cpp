@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grainlaw/dem/block_jacobi.hpp"
-#include "grainlaw/dem/contact_hessian.hpp"
 #include "grainlaw/dem/dyad.hpp"
+#include "grainlaw/dem/six_systems.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::dem {
@@ -34,20 +33,6 @@ Vec3 strained(std::size_t a, const Vec3& l) {
   }
 }
 
-/// The contacts between grains of the backbone.
-ContactNetwork bearing(const ContactNetwork& all, const Backbone& backbone) {
-  ContactNetwork some;
-  for (std::size_t c = 0; c < all.count; ++c) {
-    if (!backbone.joins(all, c)) continue;
-    some.pairs.push_back(all.pairs[c]);
-    some.normal.push_back(all.normal[c]);
-    some.force.push_back(all.force[c]);
-    some.stiffness.push_back(all.stiffness[c]);
-  }
-  some.count = some.pairs.size();
-  return some;
-}
-
 /// A contact's block K, applied to a change of its branch.
 class Block {
  public:
@@ -67,67 +52,24 @@ class Block {
   double distance_, across_, along_;
 };
 
-class Solver {
- public:
-  Solver(const ContactNetwork& network, std::size_t grains, double stiffness,
-         const LinearResponseOptions& options)
-      : options_(options), r_(grains), z_(grains), p_(grains), hp_(grains) {
-    hessian_.build(network, grains);
-    preconditioner_.build(hessian_, floor_share * stiffness);
-  }
-
-  /// x with H x = b, from 0, to the residual or to what changes `energy` by nothing; false where a direction
-  /// without stiffness is met, with x as it is then.
-  bool solve(const Field& b, double energy, Field& x) {
-    std::fill(x.begin(), x.end(), Quad{});
-    r_ = b;
-    preconditioner_.apply(r_, z_);
-    p_ = z_;
-    double rz = dot(r_, z_);
-    const double enough = std::max(options_.residual * options_.residual * rz, negligible * energy);
-    while (rz > enough) {
-      if (products_ >= options_.most_products)
-        throw Error("the contact network's stiffness was not found in " + std::to_string(products_) +
-                    " products: it is too soft, or its residual too small");
-      hessian_.apply(p_, hp_);
-      ++products_;
-      const double curvature = dot(p_, hp_);
-      if (!(curvature > 0)) return false;
-      const double alpha = rz / curvature;
-      add(alpha, p_, x);
-      add(-alpha, hp_, r_);
-      preconditioner_.apply(r_, z_);
-      const double next = dot(r_, z_);
-      add_to_scaled(z_, next / rz, p_);
-      rz = next;
-    }
-    return true;
-  }
-  std::uint64_t products() const { return products_; }
-
- private:
-  LinearResponseOptions options_;
-  ContactHessian hessian_;
-  BlockJacobi preconditioner_;
-  Field r_, z_, p_, hp_;
-  std::uint64_t products_ = 0;
-};
-
-/// -g_a: the force on each grain when the branches are strained and the grains held.
-Field forces_of_strain(const ContactNetwork& network, std::size_t grains, std::size_t a) {
-  Field force(grains);
+/// -g_a: the forces on each grain when the branches are strained and the grains held.
+SixFields forces_of_strain(const ContactNetwork& network, std::size_t grains) {
+  SixFields force(grains);
   for (std::size_t c = 0; c < network.count; ++c) {
     const Block block(network, c);
-    const Vec3 f = block * strained(a, block.branch());
-    Quad &on_i = force[network.pairs[c].i], &on_j = force[network.pairs[c].j];
-    on_i = {on_i.x - f[0], on_i.y - f[1], on_i.z - f[2], 0};
-    on_j = {on_j.x + f[0], on_j.y + f[1], on_j.z + f[2], 0};
+    SixVectors &on_i = force[network.pairs[c].i], &on_j = force[network.pairs[c].j];
+    for (std::size_t a = 0; a < 6; ++a) {
+      const Vec3 f = block * strained(a, block.branch());
+      for (std::size_t k = 0; k < 3; ++k) {
+        on_i.q[k][a] -= f[k];
+        on_j.q[k][a] += f[k];
+      }
+    }
   }
   return force;
 }
 
-Stiffness second_order(const ContactNetwork& network, double volume,
-                       const std::array<Field, 6>* displacement) {
+Stiffness second_order(const ContactNetwork& network, double volume, const SixFields* displacement) {
   Stiffness sum{};
   for (std::size_t c = 0; c < network.count; ++c) {
     const Block block(network, c);
@@ -136,8 +78,8 @@ Stiffness second_order(const ContactNetwork& network, double volume,
     for (std::size_t a = 0; a < 6; ++a) {
       w[a] = strained(a, branch);
       if (displacement == nullptr) continue;
-      const Quad &i = (*displacement)[a][network.pairs[c].i], &j = (*displacement)[a][network.pairs[c].j];
-      w[a] = {w[a][0] + i.x - j.x, w[a][1] + i.y - j.y, w[a][2] + i.z - j.z};
+      const SixVectors &i = (*displacement)[network.pairs[c].i], &j = (*displacement)[network.pairs[c].j];
+      for (std::size_t k = 0; k < 3; ++k) w[a][k] += i.q[k][a] - j.q[k][a];
     }
     for (std::size_t b = 0; b < 6; ++b) {
       const Vec3 kw = block * w[b];
@@ -149,7 +91,8 @@ Stiffness second_order(const ContactNetwork& network, double volume,
   return sum;
 }
 
-/// energy - (sigma e)_sym + sigma tr e for each strain e of one component.
+}  // namespace
+
 Stiffness derivative_of_stress(const Stiffness& energy, const Sym6& sigma) {
   Stiffness c = energy;
   const Mat3 s = matrix_of(sigma);
@@ -164,13 +107,15 @@ Stiffness derivative_of_stress(const Stiffness& energy, const Sym6& sigma) {
   return c;
 }
 
-}  // namespace
-
 LinearResponse linear_response(StaticPacking& packing, const LinearResponseOptions& options) {
   packing.find_contacts();
   const Backbone& backbone = packing.backbone();
   if (backbone.grains() == 0)
     throw Error("the packing is unjammed: no grain bears load, so it has no stiffness");
+  if (backbone.contacts() < backbone.isostatic())
+    throw Error("the packing is not held: " + std::to_string(backbone.contacts()) + " contacts between the " +
+                std::to_string(backbone.grains()) + " grains that bear load, below the " +
+                std::to_string(backbone.isostatic()) + " of an isostatic one");
   const ContactNetwork network = bearing(packing.network(), backbone);
   const std::size_t grains = packing.count();
   const double volume = packing.cell().volume();
@@ -180,14 +125,19 @@ LinearResponse linear_response(StaticPacking& packing, const LinearResponseOptio
   for (std::size_t c = 0; c < network.count; ++c)
     add_dyad(response.prestress, network.force[c] / network.normal[c].w / volume, Block(network, c).branch());
   response.affine = second_order(network, volume, nullptr);
-  Solver solver(network, grains, packing.law().stiffness(0), options);
-  std::array<Field, 6> displacement;
-  for (std::size_t a = 0; a < 6; ++a) {
-    displacement[a].resize(grains);
-    const double energy = volume * response.affine[a][a];
-    if (!solver.solve(forces_of_strain(network, grains, a), energy, displacement[a])) ++response.unstable;
-  }
-  response.products = solver.products();
+  SixSystems systems(network, grains, floor_share * packing.law().stiffness(0));
+  SixSystems::Options solver;
+  solver.residual = options.residual;
+  solver.most_iterations = options.most_iterations;
+  for (std::size_t a = 0; a < 6; ++a) solver.enough[a] = negligible * volume * response.affine[a][a];
+  SixFields forces = forces_of_strain(network, grains), displacement(grains);
+  const SixSystems::Result result = systems.solve(forces, displacement, solver);
+  if (result.gave_up)
+    throw Error("the contact network's stiffness was not found in " + std::to_string(result.iterations) +
+                " iterations: it is too soft, or its residual too small");
+  response.iterations = result.iterations;
+  response.products = result.products;
+  response.unstable = static_cast<int>(std::count(result.unstable.begin(), result.unstable.end(), true));
   response.energy = second_order(network, volume, &displacement);
   response.stress = derivative_of_stress(response.energy, response.prestress);
   return response;

@@ -7,6 +7,8 @@
 
 #include "grainlaw/dem/minimise.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/symmetry_class.hpp"
+#include "lattices.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {
@@ -97,24 +99,52 @@ TEST(LinearResponse, RatioOfA2ToA1) {
   EXPECT_NEAR(whole.G_oct - bare.G_oct, -(s[0] + s[1]) / 2, 1e-10 * bare.B);
 }
 
-/// Equal spheres at a distance d, d < 2 r, in cubes of edge a = sqrt(2) d.
-State fcc(double d, int cubes) {
-  State state;
-  const double a = std::sqrt(2.0) * d;
-  state.box = a * cubes * Mat3::identity();
-  for (int x = 0; x < cubes; ++x)
-    for (int y = 0; y < cubes; ++y)
-      for (int z = 0; z < cubes; ++z)
-        for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{0.5, 0.5, 0}, Vec3{0.5, 0, 0.5}, Vec3{0, 0.5, 0.5}})
-          state.position.push_back({a * (x + p[0]), a * (y + p[1]), a * (z + p[2])});
-  state.velocity.resize(state.position.size());
-  state.radius.assign(state.position.size(), 1.0);
-  return state;
+/// Where the stress deviator lies along D2, P and sigma_dev alone decide: A1 gains -(2/9) sigma_dev, A2
+/// (2/3) sigma_dev, so that A2/A1 = (3 A1 + (4/3) sigma_dev)/(2 A1 - (4/9) sigma_dev), bare A1.
+TEST(LinearResponse, RatioUnderPrestressAlongTheAxis) {
+  const LinearResponse response = response_of(sheared());
+  const double P = trace(response.prestress) / 3, sigma_dev = deviator_along(response.prestress, d2);
+  ASSERT_GT(sigma_dev, 0.01 * P);
+  const Sym6 along{P - sigma_dev / std::sqrt(3.0), P + sigma_dev / std::sqrt(3.0), P, 0, 0, 0};
+  const Moduli bare = moduli_of(response.energy, d2),
+               whole = moduli_of(derivative_of_stress(response.energy, along), d2);
+  EXPECT_NEAR(whole.A1 - bare.A1, -2.0 / 9 * sigma_dev, 1e-12 * bare.B);
+  EXPECT_NEAR(whole.A2 - bare.A2, 2.0 / 3 * sigma_dev, 1e-12 * bare.B);
+  EXPECT_NEAR(whole.A2 / whole.A1, (3 * bare.A1 + 4.0 / 3 * sigma_dev) / (2 * bare.A1 - 4.0 / 9 * sigma_dev),
+              1e-9);
+}
+
+/// What is left of an affine network when its prestress is taken out is a sum of nnnn: all permutations of
+/// indices are alike (Cauchy's relations), and the isotropic part has mu/K = 3/5, G_oct/B = 6/5.
+TEST(LinearResponse, AffineNetworkWithoutPrestressHasCauchysRelations) {
+  const LinearResponse response = response_of(sheared());
+  const Sym6& s = response.prestress;
+  Stiffness c = response.affine;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;  // yz, xz, xy
+    c[k][k] += s[k];
+    c[k + 3][k + 3] += 0.25 * (s[i] + s[j]);
+    for (const std::size_t other : {i, j}) {
+      const std::size_t shear = component(k, other);  // xx with xy: (1/2) s_xy
+      c[k][shear] += 0.5 * s[shear];
+      c[shear][k] += 0.5 * s[shear];
+    }
+    for (const std::size_t other : {i, j}) c[k + 3][other + 3] += 0.25 * s[component(k, other)];
+  }
+  const double error = 1e-10 * c[0][0];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    EXPECT_NEAR(c[i][j], c[k + 3][k + 3], error);                          // C_yyzz = C_yzyz
+    EXPECT_NEAR(c[k][k + 3], c[component(k, i)][component(k, j)], error);  // C_xxyz = C_xyxz
+    EXPECT_NEAR(c[k][component(k, i)], c[component(k, i)][k], error);
+  }
+  const Moduli moduli = moduli_of(isotropic_part(c), d2);
+  EXPECT_NEAR(moduli.G_oct, 1.2 * moduli.B, error);
 }
 
 TEST(LinearResponse, FaceCentredCubicLatticeHasItsClosedForm) {
   const double d = 1.9, k = 1e5, f = k * (2 - d), root = std::sqrt(2.0);
-  StaticPacking packing(Material{}, fcc(d, 3));
+  StaticPacking packing(Material{}, test::fcc(d, 3));
   const LinearResponse response = linear_response(packing);
   EXPECT_EQ(response.contacts, 6 * packing.count());
   const double c11 = root / d * (k - f / d), c12 = (k + f / d) / (root * d), c44 = (k - f / d) / (root * d);
@@ -137,6 +167,57 @@ TEST(LinearResponse, TurnsWithTheAxes) {
   for (std::size_t a = 0; a < 6; ++a)
     for (std::size_t b = 0; b < 6; ++b)
       EXPECT_NEAR(after[a][b], before[from[a]][from[b]], 1e-9 * before[0][0]) << a << b;
+}
+
+/// About any axis, with the box tilted.
+TEST(LinearResponse, TurnsWithTheFrame) {
+  const StaticPacking packing = sheared();
+  const Mat3 turn = test::rotation({1, 2, 3}, 0.7);
+  State turned = packing.state();
+  for (Vec3& x : turned.position) x = turn * x;
+  turned.box = turn * turned.box;
+  const LinearResponse before = response_of(packing), after = response_of(StaticPacking(Material{}, turned));
+  const Rotation rotation{turn.row(0), turn.row(1), turn.row(2)};
+  const double size = grainlaw::norm(before.energy);
+  for (const auto& [from, to] : {std::pair{before.energy, after.energy},
+                                 {before.stress, after.stress},
+                                 {before.affine, after.affine}}) {
+    const Stiffness expected = rotated(from, rotation);
+    for (std::size_t a = 0; a < 6; ++a)
+      for (std::size_t b = 0; b < 6; ++b) EXPECT_NEAR(to[a][b], expected[a][b], 1e-9 * size) << a << b;
+  }
+  const Sym6 left = eigenvalues(before.energy), right = eigenvalues(after.energy);
+  for (std::size_t a = 0; a < 6; ++a) EXPECT_NEAR(left[a], right[a], 1e-9 * size);
+}
+
+/// Spheres that touch along three axes: C_xxxx = k/d, and nothing resists shear. Under load the shear
+/// stiffness is what the prestress makes of it, -f/(2 d^2): less than none.
+TEST(LinearResponse, SimpleCubicLatticeHasItsClosedFormAndNoShearStiffness) {
+  const double k = 1e5;
+  for (const double d : {2.0, 1.9}) {
+    StaticPacking packing(Material{}, test::simple_cubic(d, 5));
+    const LinearResponse response = linear_response(packing);
+    EXPECT_EQ(response.contacts, 3 * packing.count());
+    const double c44 = -k * (2 - d) / (2 * d * d);
+    for (std::size_t a = 0; a < 6; ++a)
+      for (std::size_t b = 0; b < 6; ++b)
+        EXPECT_NEAR(response.energy[a][b], a != b ? 0 : a < 3 ? k / d : c44, 1e-9 * k) << a << b;
+    EXPECT_NEAR(eigenvalues(response.energy)[2], 2 * c44, 1e-9 * k);
+    EXPECT_NEAR(eigenvalues(response.energy)[3], k / d, 1e-9 * k);
+  }
+}
+
+TEST(LinearResponse, HasNoneBelowIsostatic) {
+  StaticPacking packing(Material{}, test::squeezed(Material{}, 60, 3, 0.62));
+  packing.find_contacts();
+  ASSERT_GT(packing.backbone().grains(), 0u);
+  ASSERT_LT(packing.backbone().contacts(), packing.backbone().isostatic());
+  try {
+    linear_response(packing);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("isostatic"));
+  }
 }
 
 TEST(LinearResponse, HasNoneWhereNothingBearsLoad) {
