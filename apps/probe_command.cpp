@@ -12,6 +12,7 @@
 
 #include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/apps/commands.hpp"
+#include "grainlaw/apps/elastic_columns.hpp"
 #include "grainlaw/apps/snapshot_scene.hpp"
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/dem/linear_response.hpp"
@@ -28,19 +29,31 @@ namespace fs = std::filesystem;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_over_residual = 1000;  // amplitude; else the strained packing may pass for balanced
 constexpr std::array names{"xx", "yy", "zz", "yz", "xz", "xy"};
+constexpr std::size_t constants = 21, undo_columns = 8;
 
 struct Arguments {
-  std::vector<std::string> snapshots, amplitudes;
+  std::vector<std::string> snapshots, amplitudes, also;
   std::string output, scene, axis = "d2", residual;
+  bool undo = false;
 };
 
 struct Plan {
   StrainTensor axis;
   std::vector<double> amplitudes;
   double residual;
+  bool undo;
+  ElasticColumns also;
 };
 
-std::vector<std::string> columns() {
+/// The strain of the probe beside the isotropic one.
+StrainTensor axis_of(const std::string& name) {
+  if (name == "d2") return {-1, 1, 0};
+  if (name == "d3") return {-0.5, -0.5, 1};
+  if (name == "uni") return {0, 0, 1};
+  throw Error("", "--axis", "must be d2 (-1, 1, 0), d3 (-1/2, -1/2, 1) or uni (0, 0, 1), got " + name);
+}
+
+std::vector<std::string> columns(const Plan& plan) {
   std::vector<std::string> list{"file",
                                 "frame",
                                 "segment",
@@ -61,16 +74,20 @@ std::vector<std::string> columns() {
                                 "unstable"};
   for (std::size_t a = 0; a < 6; ++a)
     for (std::size_t b = a; b < 6; ++b) list.push_back(fmt::format("E_{}_{}", names[a], names[b]));
+  if (plan.undo)
+    list.insert(list.end(), {"changed_by_volume", "changed_by_shear", "left_by_volume", "left_by_shear",
+                             "B_left", "A1_left", "A2_left", "G_oct_left"});
+  const std::vector<std::string> also = plan.also.names();
+  list.insert(list.end(), also.begin(), also.end());
   return list;
 }
 
 Plan plan_of(const Arguments& arguments) {
-  Plan plan;
-  if (arguments.axis != "d2" && arguments.axis != "d3")
-    throw Error("", "--axis", "must be d2 (-1, 1, 0) or d3 (-1/2, -1/2, 1), got " + arguments.axis);
-  plan.axis = arguments.axis == "d2" ? StrainTensor{-1, 1, 0} : StrainTensor{-0.5, -0.5, 1};
-  plan.residual =
+  const double residual =
       arguments.residual.empty() ? 1e-10 : read_number("--residual", arguments.residual, between(1e-13, 0.1));
+  Plan plan{axis_of(arguments.axis), {}, residual, arguments.undo, ElasticColumns(arguments.also)};
+  if (plan.undo && arguments.amplitudes.empty())
+    throw Error("", "--undo", "must come with a strain to undo: --amplitude");
   for (const std::string& text : arguments.amplitudes) {
     plan.amplitudes.push_back(read_number("--amplitude", text, between(1e-9, 0.1)));
     if (plan.amplitudes.back() < least_over_residual * plan.residual)
@@ -85,7 +102,11 @@ Plan plan_of(const Arguments& arguments) {
 class Probing {
  public:
   Probing(const Plan& plan, const Material& material, const dem::State& state, std::vector<double> place)
-      : plan_(plan), k_star_(material.stress_unit()), packing_(material, state), head_(std::move(place)) {
+      : plan_(plan),
+        material_(material),
+        k_star_(material.stress_unit()),
+        packing_(material, state),
+        head_(std::move(place)) {
     dem::MinimiseOptions options;
     options.residual = plan.residual;
     result_ = dem::minimise(packing_, options);
@@ -100,32 +121,51 @@ class Probing {
 
   /// The rows of this packing.
   std::vector<std::vector<double>> rows() {
-    const dem::LinearResponse response = dem::linear_response(packing_);
-    std::vector<std::vector<double>> list{row(0, result_.balance.residual,
-                                              dem::moduli_of(response.stress, plan_.axis), 0,
-                                              response.unstable, &response.energy)};
+    std::vector<std::vector<double>> list{elastic_row()};
     for (const double amplitude : plan_.amplitudes)
-      for (const double strain : {amplitude, -amplitude}) {
-        const dem::Probe probe = dem::probe(packing_, plan_.axis, strain, plan_.residual);
-        list.push_back(row(strain, probe.residual, probe.moduli, static_cast<double>(probe.contacts_changed),
-                           nothing, nullptr));
-      }
+      for (const double strain : {amplitude, -amplitude})
+        list.push_back(
+            row(dem::probe(packing_, plan_.axis, strain, {.residual = plan_.residual, .undo = plan_.undo})));
     return list;
   }
 
  private:
-  std::vector<double> row(double amplitude, double residual, const dem::Moduli& moduli, double changed,
-                          double unstable, const dem::Stiffness* energy) const {
-    std::vector<double> row = head_;
-    row.insert(row.end(), {residual, amplitude, moduli.B / k_star_, moduli.A1 / k_star_, moduli.A2 / k_star_,
-                           moduli.G_oct / k_star_, changed, unstable});
+  std::vector<double> elastic_row() {
+    const dem::LinearResponse response = dem::linear_response(packing_);
+    std::vector<double> row =
+        start(result_.balance.residual, 0, dem::moduli_of(response.stress, plan_.axis), 0, response.unstable);
     for (std::size_t a = 0; a < 6; ++a)
-      for (std::size_t b = a; b < 6; ++b)
-        row.push_back(energy != nullptr ? (*energy)[a][b] / k_star_ : nothing);
+      for (std::size_t b = a; b < 6; ++b) row.push_back(response.energy[a][b] / k_star_);
+    if (plan_.undo) row.insert(row.end(), undo_columns, nothing);
+    const std::vector<double> also = plan_.also.values(packing_, response, material_);
+    row.insert(row.end(), also.begin(), also.end());
     return row;
   }
 
+  std::vector<double> row(const dem::Probe& probe) const {
+    std::vector<double> row =
+        start(probe.residual, probe.amplitude, probe.moduli, count(probe.changed.both()), nothing);
+    row.insert(row.end(), constants, nothing);
+    if (plan_.undo)
+      row.insert(row.end(), {count(probe.changed.by_volume), count(probe.changed.by_shear),
+                             count(probe.contacts_left.by_volume), count(probe.contacts_left.by_shear),
+                             probe.left.B / k_star_, probe.left.A1 / k_star_, probe.left.A2 / k_star_,
+                             probe.left.G_oct / k_star_});
+    row.insert(row.end(), plan_.also.names().size(), nothing);
+    return row;
+  }
+
+  std::vector<double> start(double residual, double amplitude, const dem::Moduli& moduli, double changed,
+                            double unstable) const {
+    std::vector<double> row = head_;
+    row.insert(row.end(), {residual, amplitude, moduli.B / k_star_, moduli.A1 / k_star_, moduli.A2 / k_star_,
+                           moduli.G_oct / k_star_, changed, unstable});
+    return row;
+  }
+  static double count(std::uint64_t n) { return static_cast<double>(n); }
+
   const Plan& plan_;
+  Material material_;
   double k_star_;
   dem::StaticPacking packing_;
   dem::MinimiseResult result_;
@@ -185,7 +225,7 @@ int run(const Arguments& arguments) {
   const Plan plan = plan_of(arguments);
   const std::vector<Input> inputs = open_all(arguments);
   Terminal terminal;
-  Record record(columns());
+  Record record(columns(plan));
   std::size_t probed = 0, unbalanced = 0;
   for (std::size_t n = 0; n < inputs.size(); ++n)
     for (std::size_t k = 0; k < inputs[n].frames; ++k) {
@@ -216,7 +256,15 @@ Action add_probe(CLI::App& program) {
                    "also apply this strain, forwards and backwards; may be repeated")
       ->type_name("STRAIN")
       ->allow_extra_args(false);
-  command->add_option("--axis", arguments->axis, "axis of shear: d2 or d3 (default: d2)")->type_name("MODE");
+  command->add_option("--axis", arguments->axis, "axis of shear: d2, d3 or uni (default: d2)")
+      ->type_name("MODE");
+  command->add_flag("--undo", arguments->undo, "take each strain back, too, and say what is left of it");
+  command
+      ->add_option("--also", arguments->also,
+                   "more columns: eigenvalues, symmetry, young, waves, floppy; separated by commas")
+      ->type_name("NAMES")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command
       ->add_option("--residual", arguments->residual,
                    "largest net force over the mean contact force of a packing in balance (default: 1e-10)")
@@ -227,7 +275,8 @@ Action add_probe(CLI::App& program) {
   command->footer(
       "Examples:\n"
       "  grainlaw probe out/d2/snapshots.h5 -o moduli.csv\n"
-      "  grainlaw probe out/d2/snapshots.h5 --amplitude 1e-6 --amplitude 1e-3 -o moduli.csv");
+      "  grainlaw probe out/d2/snapshots.h5 --also eigenvalues,symmetry -o moduli.csv\n"
+      "  grainlaw probe out/d2/snapshots.h5 --amplitude 1e-6 --amplitude 1e-3 --undo -o moduli.csv");
   return [arguments] { return run(*arguments); };
 }
 

@@ -1,6 +1,7 @@
 // grainlaw probe: moduli of every frame, those that bear nothing named, bad input before anything is written.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "grainlaw/element/record.hpp"
@@ -43,12 +44,43 @@ TEST_F(ProbeCommand, EveryFrameThatBearsLoad) {
   EXPECT_EQ(record["frame"][3], 2);
 }
 
+/// What --also and --undo add stands after the columns that are always there.
+TEST_F(ProbeCommand, MoreColumnsByName) {
+  ASSERT_EQ(run({"probe", "r/snapshots.h5", "-o", "plain.csv"}).status, 0);
+  ASSERT_EQ(run({"probe", "r/snapshots.h5", "--amplitude", "1e-6", "--axis", "uni", "--undo", "--also",
+                 "waves,floppy,young", "--also", "symmetry,eigenvalues,young", "-o", "m.csv"})
+                .status,
+            0);
+  const std::vector<std::string> plain = Record::read_csv(folder / "plain.csv").columns();
+  const Record record = Record::read_csv(folder / "m.csv");
+  ASSERT_GT(record.columns().size(), plain.size());
+  EXPECT_TRUE(std::equal(plain.begin(), plain.end(), record.columns().begin()));
+  EXPECT_EQ(record.columns().back(), "floppy");
+  EXPECT_EQ(record["floppy"][0], 0);
+  EXPECT_LT(record["eigenvalue_1"][0], record["eigenvalue_6"][0]);
+  // The largest belongs to nearly isotropic compression: 3 K.
+  EXPECT_NEAR(record["eigenvalue_6"][0], 3 * (record["B"][0] - 2.0 / 3 * record["P"][0]),
+              0.1 * record["B"][0]);
+  EXPECT_LE(record["iso_share"][0], record["ti_best_share"][0]);
+  EXPECT_LE(record["ortho_share"][0], 1);
+  EXPECT_GT(record["Young_z"][0], 0);
+  EXPECT_LT(std::abs(record["Poisson_xy"][0]), 1);
+  EXPECT_LT(record["speed_xyz_1"][0], record["speed_xyz_3"][0]);
+  EXPECT_TRUE(std::isnan(record["B_left"][0]));
+  EXPECT_NEAR(record["B_left"][1], 0, 1e-2 * record["B"][0]);
+  EXPECT_EQ(record["changed_by_volume"][1] + record["changed_by_shear"][1], record["contacts_changed"][1]);
+  EXPECT_TRUE(std::isnan(record["floppy"][1]));
+}
+
 TEST_F(ProbeCommand, BadInput) {
   const auto refused = [&](Arguments arguments, const std::vector<std::string>& parts) {
     arguments.insert(arguments.begin(), {"probe", "r/snapshots.h5"});
     return refuses(run(arguments), parts);
   };
-  EXPECT_TRUE(refused({"-o", "m.csv", "--axis", "uni"}, {"--axis: must be d2 (-1, 1, 0) or d3", "got uni"}));
+  EXPECT_TRUE(refused({"-o", "m.csv", "--axis", "x"}, {"--axis: must be d2 (-1, 1, 0), d3", "got x"}));
+  EXPECT_TRUE(refused({"-o", "m.csv", "--also", "young,shear"},
+                      {"--also: must be eigenvalues, symmetry, young, waves or floppy, got shear"}));
+  EXPECT_TRUE(refused({"-o", "m.csv", "--undo"}, {"--undo: must come with a strain to undo"}));
   EXPECT_TRUE(
       refused({"-o", "m.csv", "--amplitude", "0"}, {"--amplitude: must be a number >= 1e-09", "got 0"}));
   EXPECT_TRUE(refused({"-o", "m.csv", "--residual", "1e-3", "--amplitude", "1e-6"},

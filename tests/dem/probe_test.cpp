@@ -3,13 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "grainlaw/dem/minimise.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {
 namespace {
 
-constexpr StrainTensor d2{-1, 1, 0}, d3{-0.5, -0.5, 1};
+constexpr StrainTensor d2{-1, 1, 0}, d3{-0.5, -0.5, 1}, uni{0, 0, 1};
 
 StaticPacking in_balance() {
   StaticPacking packing(Material{}, test::squeezed(Material{}, 200, 3, 0.75));
@@ -22,12 +24,14 @@ StaticPacking in_balance() {
 TEST(Probe, SmallStrainsMeasureTheLinearResponse) {
   StaticPacking packing = in_balance();
   const LinearResponse response = linear_response(packing);
-  for (const StrainTensor& axis : {d2, d3})
+  for (const StrainTensor& axis : {d2, d3, uni})
     for (const double amplitude : {1e-7, -1e-7}) {
       const Moduli expected = moduli_of(response.stress, axis);
-      const Probe seen = probe(packing, axis, amplitude, 1e-13);
+      const Probe seen = probe(packing, axis, amplitude, {.residual = 1e-13, .undo = true});
       EXPECT_EQ(seen.amplitude, amplitude);
-      EXPECT_EQ(seen.contacts_changed, 0u);
+      EXPECT_EQ(seen.changed.both() + seen.contacts_left.both(), 0u);
+      EXPECT_NEAR(seen.left.B, 0, 1e-4 * expected.B);
+      EXPECT_NEAR(seen.left.G_oct, 0, 1e-4 * expected.B);
       EXPECT_NEAR(seen.moduli.B, expected.B, 1e-4 * expected.B);
       EXPECT_NEAR(seen.moduli.A1, expected.A1, 1e-4 * expected.B);
       EXPECT_NEAR(seen.moduli.A2, expected.A2, 1e-4 * expected.B);
@@ -38,9 +42,12 @@ TEST(Probe, SmallStrainsMeasureTheLinearResponse) {
 TEST(Probe, LargeStrainsChangeContactsAndSoftenShear) {
   StaticPacking packing = in_balance();
   const double elastic = moduli_of(linear_response(packing).stress, d2).G_oct;
-  const Probe plastic = probe(packing, d2, 2e-2);
-  EXPECT_GT(plastic.contacts_changed, 10u);
+  const Probe plastic = probe(packing, d2, 2e-2, {.undo = true});
+  EXPECT_GT(plastic.changed.by_shear, 10u);
   EXPECT_LT(plastic.moduli.G_oct, 0.8 * elastic);
+  EXPECT_GT(plastic.contacts_left.by_shear, 3u);  // the way back leads elsewhere
+  EXPECT_GT(std::abs(plastic.left.G_oct), 1e-3 * elastic);
+  EXPECT_EQ(probe(packing, d2, 2e-2).left.G_oct, 0);
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+// What `grainlaw probe --also` makes of the elastic constants: columns of its table, by name.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grainlaw/dem/linear_response.hpp"
+#include "grainlaw/dem/static_packing.hpp"
+#include "grainlaw/element/material.hpp"
+
+namespace grainlaw::apps {
+
+/// Only what is asked for is computed.
+class ElasticColumns {
+ public:
+  /// `wanted`: of eigenvalues, symmetry, young, waves, floppy. Throws Error for any other name.
+  explicit ElasticColumns(const std::vector<std::string>& wanted);
+
+  std::vector<std::string> names() const;
+  /// One for each name, of a packing and its linear response; not a number where the stiffness has none.
+  std::vector<double> values(const dem::StaticPacking& packing, const dem::LinearResponse& response,
+                             const Material& material) const;
+
+ private:
+  std::vector<std::size_t> wanted_;  ///< which group, each once, in their own order
+};
+
+}  // namespace grainlaw::apps
