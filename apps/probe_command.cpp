@@ -28,6 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_over_residual = 1000;  // amplitude; else the strained packing may pass for balanced
+constexpr double rounding = 1e-12;
 constexpr std::array names{"xx", "yy", "zz", "yz", "xz", "xy"};
 constexpr std::size_t constants = 21, undo_columns = 8;
 
@@ -90,7 +91,7 @@ Plan plan_of(const Arguments& arguments) {
     throw Error("", "--undo", "must come with a strain to undo: --amplitude");
   for (const std::string& text : arguments.amplitudes) {
     plan.amplitudes.push_back(read_number("--amplitude", text, between(1e-9, 0.1)));
-    if (plan.amplitudes.back() < least_over_residual * plan.residual)
+    if (plan.amplitudes.back() < (1 - rounding) * least_over_residual * plan.residual)
       throw Error(
           "", "--amplitude",
           "must be at least 1000 times the residual, which is " + to_text(plan.residual) + "; got " + text);

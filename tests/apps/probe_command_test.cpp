@@ -92,7 +92,7 @@ TEST_F(ProbeCommand, BadInput) {
 }
 
 TEST_F(ProbeCommand, OptionsMayComeFirst) {
-  EXPECT_EQ(run({"probe", "--amplitude", "1e-6", "r/snapshots.h5", "-o", "m.csv"}).status, 0);
+  EXPECT_EQ(run({"probe", "--amplitude", "1e-7", "r/snapshots.h5", "-o", "m.csv"}).status, 0);
 }
 
 TEST_F(ProbeCommand, WhereNothingBearsLoadItFails) {
