@@ -15,9 +15,8 @@
 
 #include "grainlaw/dem/floppy_modes.hpp"
 #include "grainlaw/dem/linear_response.hpp"
-#include "grainlaw/dem/minimise.hpp"
 #include "grainlaw/dem/preparation.hpp"
-#include "grainlaw/element/error.hpp"
+#include "stress_differences.hpp"
 
 namespace {
 
@@ -34,15 +33,6 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-void balance(StaticPacking& packing) {
-  MinimiseOptions options;
-  options.residual = 1e-13;  // what rounding leaves
-  options.most_passes = 1'000'000;
-  const MinimiseResult result = minimise(packing, options);
-  if (result.outcome == Outcome::gave_up || result.outcome == Outcome::unjammed)
-    throw Error("the packing is " + result.text());
-}
-
 StaticPacking random_packing(const Material& material, long count, std::uint64_t seed, double nu) {
   NewPacking start;
   start.count = count;
@@ -50,29 +40,8 @@ StaticPacking random_packing(const Material& material, long count, std::uint64_t
   start.nu_gas = 0.4;
   StaticPacking packing(material, random_gas(material, start));
   packing.deform(std::cbrt(0.4 / nu) * packing.cell().edges());
-  balance(packing);
+  balance_fully(packing);
   return packing;
-}
-
-Sym6 stress_at(const StaticPacking& start, std::size_t component, double size) {
-  Sym6 strain{};
-  strain[component] = component < 3 ? size : 0.5 * size;
-  StaticPacking packing = start;
-  packing.deform((Mat3::identity() + -1.0 * matrix_of(strain)) * packing.cell().edges());
-  balance(packing);
-  return packing.measure().stress;
-}
-
-double error_at(const StaticPacking& packing, const Stiffness& stress, double h) {
-  double error = 0, largest = 0;
-  for (std::size_t b = 0; b < 6; ++b) {
-    const Sym6 plus = stress_at(packing, b, h), minus = stress_at(packing, b, -h);
-    for (std::size_t a = 0; a < 6; ++a) {
-      error = std::max(error, std::abs((plus[a] - minus[a]) / (2 * h) - stress[a][b]));
-      largest = std::max(largest, std::abs(stress[a][b]));
-    }
-  }
-  return error / largest;
 }
 
 double least_error(const StaticPacking& packing, const Stiffness& stress, double pressure) {
@@ -134,7 +103,7 @@ int main(int argc, char** argv) try {
     const double bulk = report(packing, material, print), to = std::max({0.7 * p, next, last});
     const double strain = (p - to) / bulk / 3;  // of each axis, less where the packing gets softer
     packing.deform(std::exp(strain) * packing.cell().edges());
-    balance(packing);
+    balance_fully(packing);
   }
   return 0;
 } catch (const std::exception& error) {

@@ -24,6 +24,7 @@
 #include "grainlaw/dem/snapshot.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
+#include "stress_differences.hpp"
 
 namespace {
 
@@ -148,8 +149,10 @@ int main(int count, char** arguments) try {
       time_step(material, *std::min_element(state.radius.begin(), state.radius.end()), fraction) / fraction);
   print("linear", moduli_of(response.stress, d2), material.stress_unit());
   print("dynamic", {volume.of_pressure, shear.of_pressure, volume.of_deviator, shear.of_deviator}, 1);
-  const std::array<double, 2> signs{1, -1};
-  for (const double sign : signs) {
+  const double then = processor_seconds();
+  std::printf("difference %.2e\n", error_at(packing, response.stress, 1e-7));
+  std::printf("difference_seconds %.2f\n", processor_seconds() - then);
+  for (const double sign : {1.0, -1.0}) {
     const Probe probe = dem::probe(packing, d2, sign * amplitude);
     std::printf("contacts_changed %llu\n", static_cast<unsigned long long>(probe.changed.both()));
   }
