@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws docs/pictures/amplitude.svg from data/moduli/amplitude-*.csv, and prints the numbers behind it.
+# Draws docs/pictures/amplitude.svg from data/bench/amplitude-9261, and prints the numbers behind it.
 # Usage: docs/pictures/amplitude.sh
 set -euo pipefail
 cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../.."
@@ -19,7 +19,7 @@ for nu in 0.75 0.68; do
       printf "%g %.6f %.6f %g %g %g %g %.3g %.3g\n", -$c["amplitude"], (b + $c["B"]) / 2 / B, (g + $c["G_oct"]) / 2 / G,
         (n + $c["changed_by_volume"]) / 2, (m + $c["changed_by_shear"]) / 2, (nl + $c["left_by_volume"]) / 2,
         (ml + $c["left_by_shear"]) / 2, (bl + size($c["B_left"])) / 2 / B, (gl + size($c["G_oct_left"])) / 2 / G >f
-    }' "data/moduli/amplitude-$nu-s1.csv"
+    }' "data/bench/amplitude-9261/nu-$nu.csv"
   for state in 0 1; do
     echo "nu $nu, $([ $state = 0 ] && echo isotropic || echo sheared): amplitude, B, G_oct, changed (volume, shear), still changed, B left, G_oct left"
     cat "$points/$nu-$state"

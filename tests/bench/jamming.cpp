@@ -15,7 +15,7 @@
 
 #include "grainlaw/dem/floppy_modes.hpp"
 #include "grainlaw/dem/linear_response.hpp"
-#include "grainlaw/dem/preparation.hpp"
+#include "random_packing.hpp"
 #include "stress_differences.hpp"
 
 namespace {
@@ -31,17 +31,6 @@ double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-StaticPacking random_packing(const Material& material, long count, std::uint64_t seed, double nu) {
-  NewPacking start;
-  start.count = count;
-  start.seed = seed;
-  start.nu_gas = 0.4;
-  StaticPacking packing(material, random_gas(material, start));
-  packing.deform(std::cbrt(0.4 / nu) * packing.cell().edges());
-  balance_fully(packing);
-  return packing;
 }
 
 double least_error(const StaticPacking& packing, const Stiffness& stress, double pressure) {
@@ -102,7 +91,7 @@ int main(int argc, char** argv) try {
   const Material material;
   StaticPacking packing =
       random_packing(material, std::atol(argv[1]), argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1,
-                     argc > 3 ? std::strtod(argv[3], nullptr) : 0.67);
+                     argc > 3 ? std::strtod(argv[3], nullptr) : 0.67, 1e-12);
   std::puts(
       "| P* | nu | grains that bear load | contacts over isostatic, % | B/k* | G_oct/k* | floppy | unstable "
       "| iterations | s | s for floppy | error of the solver | difference |");

@@ -4,13 +4,13 @@
 #include <sys/resource.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 
 #include "grainlaw/dem/floppy_modes.hpp"
 #include "grainlaw/dem/linear_response.hpp"
-#include "grainlaw/dem/minimise.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "random_packing.hpp"
 
 namespace {
 
@@ -29,13 +29,10 @@ double most_memory_MiB() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-void report(const char* file) {
+void report(double nu, std::int64_t count) {
   const Material material;
-  StaticPacking packing(material, read_frame(file, {}));
-  MinimiseOptions options;
-  options.residual = 1e-10;
   const double begin = processor_seconds();
-  const MinimiseResult result = minimise(packing, options);
+  StaticPacking packing = random_packing(material, count, 1, nu, 1e-9);
   const double balanced = processor_seconds();
   const LinearResponse response = linear_response(packing);
   const double solved = processor_seconds();
@@ -43,9 +40,8 @@ void report(const char* file) {
   const FloppyModes floppy = floppy_modes(packing);
   const double counted = processor_seconds();
   const Moduli moduli = moduli_of(response.stress, {-1, 1, 0});
-  std::printf("| %zu | %.2f (%s) | %llu | %.3f | %.2f | %zu in %.2f s | %.0f | %.5f | %.5f |\n",
-              packing.count(), balanced - begin, result.text().c_str(),
-              static_cast<unsigned long long>(response.iterations), solved - balanced,
+  std::printf("| %zu | %.1f | %llu | %.3f | %.2f | %zu in %.2f s | %.0f | %.5f | %.5f |\n", packing.count(),
+              balanced - begin, static_cast<unsigned long long>(response.iterations), solved - balanced,
               1e9 * (solved - balanced) / static_cast<double>(packing.count()) /
                   static_cast<double>(response.iterations),
               floppy.count, counted - solved, memory, moduli.B / material.stress_unit(),
@@ -56,12 +52,12 @@ void report(const char* file) {
 }  // namespace
 
 int main(int count, char** arguments) try {
-  if (count < 2) return std::fprintf(stderr, "usage: %s SNAPSHOTS.h5...\n", arguments[0]), 2;
+  if (count < 3) return std::fprintf(stderr, "usage: %s NU COUNT...\n", arguments[0]), 2;
   std::puts(
       "| N | balance, s | iterations | s | ns per grain and iteration | floppy modes | MiB | B/k* | G_oct/k* "
       "|");
   std::puts("|---|---|---|---|---|---|---|---|---|");
-  for (int a = 1; a < count; ++a) report(arguments[a]);
+  for (int a = 2; a < count; ++a) report(std::atof(arguments[1]), std::atoll(arguments[a]));
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;
