@@ -32,7 +32,7 @@ class ContactHessian {
   const std::vector<Sym6>& diagonal() const { return diagonal_; }
 
   const std::vector<ContactNetwork::Pair>& pairs() const { return pairs_; }
-  const std::vector<Quad>& springs() const { return spring_; }        ///< m | 0
+  const std::vector<Quad>& springs() const { return spring_; }         ///< m | 0
   const std::vector<double>& prestress() const { return prestress_; }  ///< t
 
  private:
