@@ -16,7 +16,7 @@ red = "#b2182b"; blue = "#2166ac"
 file(nu, state) = points . "/" . nu . "-" . state
 
 set title "secant modulus over that of linear response"
-set yrange [0:1.1]
+set yrange [0:1.35]
 set key bottom left Left reverse
 plot file("0.75", 0) using 1:2 pt 7 lc rgb blue title "B, ν = 0.75", \
      file("0.75", 1) using 1:3 pt 7 lc rgb red title "G_{oct}, ν = 0.75, sheared", \
@@ -34,7 +34,7 @@ plot file("0.75", 1) using 1:5 pt 7 lc rgb red title "ν = 0.75, sheared", \
      file("0.68", 1) using 1:5 pt 7 dt 2 lc rgb red title "ν = 0.68, sheared", \
      file("0.68", 0) using 1:5 pt 6 dt 2 lc rgb red title "isotropic"
 
-set title "shear stress left when the strain is undone, over that of the strain"
+set title "share of the shear stress left after the way back"
 set yrange [1e-6:2]
 plot file("0.75", 1) using 1:9 pt 7 lc rgb red title "ν = 0.75, sheared", \
      file("0.75", 0) using 1:9 pt 6 lc rgb red title "isotropic", \
