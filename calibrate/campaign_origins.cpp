@@ -161,11 +161,15 @@ class Origins {
   /// led is checked when it begins.
   void check_targets(const CampaignTest& test) const {
     const std::size_t count = test.path.nominal_legs(test.nu_start, test.nu_known).size();
-    for (std::size_t i = 0; i < test.measure.snapshots.size(); ++i)
-      if (test.measure.snapshots[i].segment >= count)
-        fail(test, "measure.snapshots[" + std::to_string(i) + "].segment",
-             "must be less than " + std::to_string(count) + ", the number of segments, got " +
-                 std::to_string(test.measure.snapshots[i].segment));
+    const auto check = [&](const std::string& list, const std::vector<dem::StateRequest>& requests) {
+      for (std::size_t i = 0; i < requests.size(); ++i)
+        if (requests[i].segment >= count)
+          fail(test, "measure." + list + "[" + std::to_string(i) + "].segment",
+               "must be less than " + std::to_string(count) + ", the number of segments, got " +
+                   std::to_string(requests[i].segment));
+    };
+    check("snapshots", test.measure.snapshots);
+    check("moduli", test.measure.moduli);
     if (!test.nu_known) return;
     try {
       dem::Scene{campaign_.material, campaign_.preparation, test.path, test.measure, ""}.legs(test.nu_start);

@@ -15,9 +15,9 @@ namespace {
 constexpr double relaxation_share = 0.3;
 
 /// Snapshots that other tests need of this one, for one seed.
-std::vector<dem::SnapshotRequest> needed_snapshots(const Campaign& campaign, const CampaignTest& producer,
-                                                   std::int64_t seed) {
-  std::vector<dem::SnapshotRequest> needed;
+std::vector<dem::StateRequest> needed_snapshots(const Campaign& campaign, const CampaignTest& producer,
+                                                std::int64_t seed) {
+  std::vector<dem::StateRequest> needed;
   for (const auto& test : campaign.tests) {
     if (!test.from || test.from->test != producer.name) continue;
     if (std::find(test.seeds.begin(), test.seeds.end(), seed) == test.seeds.end()) continue;
@@ -26,9 +26,9 @@ std::vector<dem::SnapshotRequest> needed_snapshots(const Campaign& campaign, con
   return needed;
 }
 
-void add_snapshots(dem::Measure& measure, const std::vector<dem::SnapshotRequest>& needed) {
+void add_snapshots(dem::Measure& measure, const std::vector<dem::StateRequest>& needed) {
   for (const auto& request : needed) {
-    const auto same = [&](const dem::SnapshotRequest& other) {
+    const auto same = [&](const dem::StateRequest& other) {
       return other.segment == request.segment && other.nu == request.nu && other.eps_dev == request.eps_dev;
     };
     if (std::none_of(measure.snapshots.begin(), measure.snapshots.end(), same))

@@ -1,10 +1,12 @@
 #include "grainlaw/calibrate/kept_record.hpp"
 
 #include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/dem/moduli_writer.hpp"
 #include "grainlaw/dem/observe/names.hpp"
 #include "grainlaw/dem/scene.hpp"
 #include "grainlaw/dem/snapshot.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/record.hpp"
 
 namespace grainlaw::calibrate {
@@ -28,6 +30,17 @@ void check_files(const fs::path& dir) {
     if (!fs::exists(dir / file)) throw Error((dir / file).string(), "", "no such file");
 }
 
+/// One row for each state that the scene asks for; at most, where some may never have come.
+void check_moduli(const fs::path& dir, std::size_t states, bool all_met) {
+  const fs::path table = dir / dem::ModuliWriter::file;
+  if (states == 0 || (!all_met && !fs::exists(table))) return;
+  const std::size_t rows = read_moduli(table).rows();
+  if (rows == states || (!all_met && rows < states)) return;
+  throw Error(table.string(), "",
+              "must have " + std::to_string(states) + " rows, got " + std::to_string(rows) +
+                  ": it is cut short or of another scene");
+}
+
 }  // namespace
 
 void check_kept_record(const fs::path& dir, const Json& planned) {
@@ -47,6 +60,8 @@ void check_kept_record(const fs::path& dir, const Json& planned) {
     const Record record = Record::read_csv(table, columns);
     for (const auto& file : dem::observe::tables(wanted.measure.observe))
       Record::read_csv(dir / file, {"row"});
+    const bool all_met = !cut_short && !wanted.path.by_stress();  // else a state may never have come
+    check_moduli(dir, wanted.measure.moduli.size(), all_met);
     if (cut_short && record.rows() <= wanted.record_rows()) return;
     if (record.rows() != wanted.record_rows())
       throw Error(table, "",

@@ -244,6 +244,7 @@ void ElementTest::write_record(const RunSummary& summary) const {
   provenance.cut_short = summary.cut_short;
   write_file(out_dir_ / "provenance.json", provenance.to_json().dump(2) + "\n");
   for (const auto& table : recorder_.tables()) table.rows.write_csv(out_dir_ / table.file);
+  if (recorder_.moduli().rows() > 0) recorder_.moduli().write_csv(out_dir_ / ModuliWriter::file);
   recorder_.record().write_csv(out_dir_ / "record.csv");
   std::filesystem::remove(out_dir_ / Recorder::rows_file);
   remove_checkpoints(out_dir_);

@@ -34,8 +34,8 @@ Relaxation read_relaxation(Reader reader) {
   return relax;
 }
 
-SnapshotRequest read_request(Reader& reader) {
-  SnapshotRequest request;
+StateRequest read_request(Reader& reader) {
+  StateRequest request;
   request.segment = static_cast<std::size_t>(reader.integer("segment", 0, most_segments - 1));
   request.nu = reader.maybe_number("nu", inside(0, 1));
   request.eps_dev = reader.maybe_number("eps_dev", any_number());
@@ -88,8 +88,8 @@ void agree_on_start(Scene& scene, const Reader& reader) {
 }
 
 /// Throws Error unless the value lies between the two ends of a segment that moves it.
-void check_target(const SnapshotRequest& request, std::size_t index, const Leg& leg, double nu_start,
-                  const std::string& file) {
+void check_target(const StateRequest& request, const std::string& list, std::size_t index, const Leg& leg,
+                  double nu_start, const std::string& file) {
   if (!request.nu && !request.eps_dev) return;
   const bool by_nu = request.nu.has_value();
   const std::string name = by_nu ? "nu" : "eps_dev";
@@ -97,7 +97,7 @@ void check_target(const SnapshotRequest& request, std::size_t index, const Leg& 
   double low = by_nu ? nu_start * std::exp(leg.eps_vol[0]) : leg.eps_dev[0];
   double high = by_nu ? nu_start * std::exp(leg.eps_vol[1]) : leg.eps_dev[1];
   const std::string segment = "segment " + std::to_string(request.segment) + " (" + name_of(leg.mode) + ")";
-  const std::string key = "measure.snapshots[" + std::to_string(index) + "]." + name;
+  const std::string key = "measure." + list + "[" + std::to_string(index) + "]." + name;
   if (std::abs(high - low) <= target_slack)
     throw Error(file, key,
                 segment + " does not change " + name + ", so it has no such place, got " + to_text(wanted));
@@ -120,14 +120,41 @@ std::filesystem::path resolved(const std::filesystem::path& path) {
   return std::filesystem::weakly_canonical(std::filesystem::absolute(path));
 }
 
-void check_segments_exist(const Scene& scene) {
-  const auto& snapshots = scene.measure.snapshots;
+void check_segments_exist(const Scene& scene, const std::string& list,
+                          const std::vector<StateRequest>& requests) {
   const std::size_t count = scene.path.segments.size();
-  for (std::size_t i = 0; i < snapshots.size(); ++i)
-    if (snapshots[i].segment >= count)
-      throw Error(scene.file, "measure.snapshots[" + std::to_string(i) + "].segment",
+  for (std::size_t i = 0; i < requests.size(); ++i)
+    if (requests[i].segment >= count)
+      throw Error(scene.file, "measure." + list + "[" + std::to_string(i) + "].segment",
                   "must be a segment of the path, 0 to " + std::to_string(count - 1) + ", got " +
-                      std::to_string(snapshots[i].segment));
+                      std::to_string(requests[i].segment));
+}
+
+std::vector<StateRequest> read_requests(Reader& reader, const char* list,
+                                        const std::vector<StateRequest>& fallback) {
+  if (!reader.has(list)) return fallback;
+  std::vector<StateRequest> requests;
+  for (Reader& request : reader.objects_or_none(list)) requests.push_back(read_request(request));
+  return requests;
+}
+
+Json requests_json(const std::vector<StateRequest>& requests) {
+  Json list = Json::array();
+  for (const StateRequest& request : requests) {
+    Json item{{"segment", request.segment}};
+    if (request.nu) item["nu"] = *request.nu;
+    if (request.eps_dev) item["eps_dev"] = *request.eps_dev;
+    list.push_back(item);
+  }
+  return list;
+}
+
+/// Each has one row in moduli.csv.
+void check_different(const Reader& reader, const std::vector<StateRequest>& moduli) {
+  for (std::size_t i = 1; i < moduli.size(); ++i)
+    if (std::find(moduli.begin(), moduli.begin() + static_cast<std::ptrdiff_t>(i), moduli[i]) !=
+        moduli.begin() + static_cast<std::ptrdiff_t>(i))
+      reader.fail("moduli[" + std::to_string(i) + "]", "asks for the same state as an earlier one");
 }
 
 }  // namespace
@@ -203,9 +230,9 @@ double read_step(Reader& reader, const std::string& key, double fallback) {
 Measure Measure::read(Reader reader, const Measure& fallback) {
   Measure measure = fallback;
   measure.rows = reader.integer("rows", 1, most_rows, fallback.rows);
-  if (reader.has("snapshots")) measure.snapshots.clear();
-  for (Reader& request : reader.objects_or_none("snapshots"))
-    measure.snapshots.push_back(read_request(request));
+  measure.snapshots = read_requests(reader, "snapshots", fallback.snapshots);
+  measure.moduli = read_requests(reader, "moduli", fallback.moduli);
+  check_different(reader, measure.moduli);
   measure.time_step = read_step(reader, "time_step", fallback.time_step);
   measure.time_step_gas = read_step(reader, "time_step_gas", fallback.time_step_gas);
   measure.observe = read_observers(reader, fallback.observe);
@@ -214,18 +241,9 @@ Measure Measure::read(Reader reader, const Measure& fallback) {
 }
 
 Json Measure::to_json() const {
-  Json list = Json::array();
-  for (const auto& request : snapshots) {
-    Json item{{"segment", request.segment}};
-    if (request.nu) item["nu"] = *request.nu;
-    if (request.eps_dev) item["eps_dev"] = *request.eps_dev;
-    list.push_back(item);
-  }
-  return {{"rows", rows},
-          {"snapshots", list},
-          {"time_step", time_step},
-          {"time_step_gas", time_step_gas},
-          {"observe", observe}};
+  return {
+      {"rows", rows},           {"snapshots", requests_json(snapshots)}, {"moduli", requests_json(moduli)},
+      {"time_step", time_step}, {"time_step_gas", time_step_gas},        {"observe", observe}};
 }
 
 Scene Scene::read(Reader reader, const std::filesystem::path& scene_dir) {
@@ -242,7 +260,8 @@ Scene Scene::read(Reader reader, const std::filesystem::path& scene_dir) {
   reader.finish();
   refuse_prescribed(scene.path, reader);
   agree_on_start(scene, reader);
-  check_segments_exist(scene);
+  check_segments_exist(scene, "snapshots", scene.measure.snapshots);
+  check_segments_exist(scene, "moduli", scene.measure.moduli);
   if (const auto nu = scene.start_nu(); nu && std::holds_alternative<NewPacking>(scene.preparation))
     scene.legs(*nu);
   return scene;
@@ -310,9 +329,13 @@ std::vector<Leg> Scene::legs(double nu) const {
   const auto first_servo = std::find_if(segments.begin(), segments.end(),
                                         [](const Segment& segment) { return segment.control.by_stress(); });
   const auto certain = static_cast<std::size_t>(first_servo - segments.begin());
-  for (std::size_t i = 0; i < measure.snapshots.size(); ++i)
-    if (const std::size_t segment = measure.snapshots[i].segment; segment < certain)
-      check_target(measure.snapshots[i], i, legs.at(segment), nu, file);
+  const auto check = [&](const std::string& list, const std::vector<StateRequest>& requests) {
+    for (std::size_t i = 0; i < requests.size(); ++i)
+      if (const std::size_t segment = requests[i].segment; segment < certain)
+        check_target(requests[i], list, i, legs.at(segment), nu, file);
+  };
+  check("snapshots", measure.snapshots);
+  check("moduli", measure.moduli);
   return legs;
 }
 

@@ -51,17 +51,20 @@ struct FromSnapshot {
   Json to_json(const std::filesystem::path& dir = {}) const;
 };
 
-/// A snapshot to take: where nu or eps_dev first reaches the value in this segment, or else at the segment's
-/// end.
-struct SnapshotRequest {
+/// A state to keep, or to measure the moduli of: where nu or eps_dev first reaches the value in this segment,
+/// or else at the segment's end.
+struct StateRequest {
   std::size_t segment = 0;
   std::optional<double> nu, eps_dev;  ///< at most one is set
+
+  bool operator==(const StateRequest&) const = default;
 };
 
 /// What to write down, how often, and how finely to step.
 struct Measure {
   std::int64_t rows = 100;  ///< per segment, evenly spaced in its strain
-  std::vector<SnapshotRequest> snapshots;
+  std::vector<StateRequest> snapshots;
+  std::vector<StateRequest> moduli;  ///< states whose small-strain moduli are wanted, no two the same
   double time_step = 0.2;            ///< over the smallest contact duration
   double time_step_gas = 0.05;       ///< the same, during preparation
   std::vector<std::string> observe;  ///< beside the standard columns; of observe::names(), in their order

@@ -17,7 +17,7 @@ constexpr double relaxation_share = 0.3;  // of its longest duration that a rela
 constexpr std::uint64_t least_steps_per_row = 2;
 
 /// The share of a leg's strain at which a wanted snapshot lies.
-double wanted_progress(const SnapshotRequest& wanted, const Leg& leg, double nu_start) {
+double wanted_progress(const StateRequest& wanted, const Leg& leg, double nu_start) {
   const auto share = [](double x, const double(&ends)[2]) {
     return std::clamp((x - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0);
   };
@@ -37,10 +37,12 @@ std::vector<std::uint64_t> row_steps(const Leg& leg, std::uint64_t rows, std::ui
   return list;
 }
 
-std::vector<std::uint64_t> snapshot_steps(const Leg& leg, std::size_t segment, const Measure& measure,
-                                          double nu_start, std::uint64_t steps) {
+/// The steps on which requests of a segment fall, rising.
+std::vector<std::uint64_t> request_steps(const Leg& leg, std::size_t segment,
+                                         const std::vector<StateRequest>& requests, double nu_start,
+                                         std::uint64_t steps) {
   std::vector<std::uint64_t> list;
-  for (const SnapshotRequest& wanted : measure.snapshots) {
+  for (const StateRequest& wanted : requests) {
     if (wanted.segment != segment) continue;
     const double share =
         leg.mode == Mode::relax ? 1 : leg.time_at(wanted_progress(wanted, leg, nu_start)) / leg.duration;
@@ -48,8 +50,12 @@ std::vector<std::uint64_t> snapshot_steps(const Leg& leg, std::size_t segment, c
     list.push_back(std::min(steps, static_cast<std::uint64_t>(step)));
   }
   std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
   return list;
+}
+
+std::vector<std::uint64_t> each_once(std::vector<std::uint64_t> rising) {
+  rising.erase(std::unique(rising.begin(), rising.end()), rising.end());
+  return rising;
 }
 
 Stage stage_of_path(const Scene& scene, const Leg& leg, std::size_t index, double nu_start,
@@ -68,13 +74,15 @@ Stage stage_of_path(const Scene& scene, const Leg& leg, std::size_t index, doubl
     stage.row_count = rows;
   } else if (leg.duration > 0) {
     stage.rows = row_steps(leg, rows, stage.stepping.steps);
-    stage.snapshots = snapshot_steps(leg, index, scene.measure, nu_start, stage.stepping.steps);
+    const std::uint64_t steps = stage.stepping.steps;
+    stage.snapshots = each_once(request_steps(leg, index, scene.measure.snapshots, nu_start, steps));
+    stage.moduli = request_steps(leg, index, scene.measure.moduli, nu_start, steps);
   }
   return stage;
 }
 
 Stage stage_of_preparation(const std::string& name, const Leg& leg, double longest_step) {
-  return {name, leg, {}, plan_steps(leg, longest_step, 1), {}, {}, 0};
+  return {name, leg, {}, plan_steps(leg, longest_step, 1), {}, {}, {}, 0};
 }
 
 }  // namespace

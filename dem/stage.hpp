@@ -20,6 +20,7 @@ struct Stage {
   StepPlan stepping;
   std::vector<std::uint64_t> rows;       ///< steps after which to measure, rising; none on a controlled leg
   std::vector<std::uint64_t> snapshots;  ///< steps after which to take one, rising; none on a controlled leg
+  std::vector<std::uint64_t> moduli;     ///< the same for moduli; a step as often as requests fall on it
 
   std::uint64_t row_count = 0;  ///< rows of a controlled leg, evenly spaced in its progress
 

@@ -10,6 +10,7 @@
 #include "grainlaw/dem/provenance.hpp"
 #include "grainlaw/dem/scene.hpp"
 #include "grainlaw/element/json.hpp"
+#include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/element/record.hpp"
 
@@ -107,6 +108,10 @@ TEST(Schema, Observers) {
     EXPECT_EQ(keys(file["properties"]), table.rows.columns()) << table.file;
     EXPECT_EQ(file["required"].get<std::vector<std::string>>(), table.rows.columns()) << table.file;
   }
+}
+
+TEST(Schema, ColumnsOfATableOfModuli) {
+  EXPECT_EQ(keys(schema("moduli")["properties"]), moduli_columns());
 }
 
 TEST(Schema, ColumnsOfARecord) {

@@ -38,7 +38,8 @@ const char* const scene_text = R"({
     {"mode": "relax", "residual": 1e-4},
     {"mode": "d2", "amount": 0.01, "profile": "quasistatic", "increment": 5e-4, "residual": 1e-4}]},
   "measure": {"rows": 10, "time_step": 0.2, "time_step_gas": 0.1,
-    "snapshots": [{"segment": 0, "nu": 0.64}, {"segment": 0, "nu": 0.7}, {"segment": 1}, {"segment": 2}, {"segment": 4}]}
+    "snapshots": [{"segment": 0, "nu": 0.64}, {"segment": 0, "nu": 0.7}, {"segment": 1}, {"segment": 2}, {"segment": 4}],
+    "moduli": [{"segment": 0, "nu": 0.65}, {"segment": 0, "nu": 0.74}, {"segment": 1}, {"segment": 2, "eps_dev": 0.02}]}
 })";
 
 Scene scene_of(const std::string& json) {
@@ -73,6 +74,7 @@ class Checkpoints : public testing::Test {
   }
   void expect_same(const std::string& name, const std::string& whole) {
     EXPECT_EQ(read_file(dir / name / "record.csv"), read_file(dir / whole / "record.csv")) << name;
+    EXPECT_EQ(read_file(dir / name / "moduli.csv"), read_file(dir / whole / "moduli.csv")) << name;
     const auto frames = list_frames(dir / whole / "snapshots.h5");
     ASSERT_EQ(list_frames(dir / name / "snapshots.h5"), frames) << name;
     for (std::size_t k = 0; k < frames.size(); ++k)

@@ -47,7 +47,7 @@ TEST(Scene, DefaultsAreThoseOfTheDocumentation) {
       json["preparation"].dump(),
       R"({"count":1000,"seed":1,"nu_gas":0.3,"speed":0.02,"nu":0.64,"rate":0.0002,"relax":{"tolerance":1e-06,"duration":2000.0}})");
   EXPECT_EQ(json["measure"].dump(),
-            R"({"rows":100,"snapshots":[],"time_step":0.2,"time_step_gas":0.05,"observe":[]})");
+            R"({"rows":100,"snapshots":[],"moduli":[],"time_step":0.2,"time_step_gas":0.05,"observe":[]})");
   EXPECT_EQ(json["path"]["segments"].size(), 1u);
 }
 
@@ -168,6 +168,14 @@ TEST(Scene, GrainsOfASnapshotMustBeOfTheMaterial) {
       scene_of(with("material", R"({"r_mean": 2})")).check_grains(state));  // makes its own grains
 }
 
+TEST(Scene, ModuliAreAskedForLikeSnapshots) {
+  const Scene scene =
+      scene_of(with("measure", R"({"moduli": [{"segment": 1, "nu": 0.7}, {"segment": 1}]})", iso_and_back));
+  ASSERT_EQ(scene.measure.moduli.size(), 2u);
+  EXPECT_EQ(scene.measure.moduli[0].nu, 0.7);
+  EXPECT_EQ(scene.to_json()["measure"]["moduli"].dump(), R"([{"segment":1,"nu":0.7},{"segment":1}])");
+}
+
 // ---- bad input, key by key
 
 TEST(SceneRefuses, UnknownKeys) {
@@ -264,6 +272,18 @@ TEST(SceneRefuses, TwoWaysToChooseAFrame) {
             "scene.json: preparation.frame: redundant: nu already chooses the state; give one");
   EXPECT_EQ(refusal(with("preparation", R"({"snapshot": "a.h5", "segment": 1, "frame": 1})")),
             "scene.json: preparation.segment: redundant: frame already chooses the state; give one");
+}
+
+TEST(SceneRefuses, ModuliThatThePathDoesNotMeet) {
+  const auto at = [](const std::string& requests) {
+    return refusal(with("measure", R"({"moduli": [)" + requests + "]}", iso_and_back));
+  };
+  EXPECT_EQ(at(R"({"segment": 2})"),
+            "scene.json: measure.moduli[0].segment: must be a segment of the path, 0 to 1, got 2");
+  EXPECT_EQ(at(R"({"segment": 0, "nu": 0.5})").substr(0, 70),
+            "scene.json: measure.moduli[0].nu: must lie in segment 0 (iso), nu from");
+  EXPECT_EQ(at(R"({"segment": 1}, {"segment": 0}, {"segment": 1})"),
+            "scene.json: measure.moduli[2]: asks for the same state as an earlier one");
 }
 
 TEST(SceneRefuses, SnapshotsThatThePathDoesNotMeet) {

@@ -56,7 +56,8 @@ void run_element_tests(const fs::path& dir) {
     "preparation": {"count": 64, "nu": 0.6, "relax": {"duration": 20}},
     "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.7}, "rate": 1e-3},
                           {"mode": "relax", "duration": 20}, {"mode": "d2", "amount": 0.01, "rate": 1e-3}]},
-    "measure": {"rows": 10, "snapshots": [{"segment": 2}]}})");
+    "measure": {"rows": 10, "snapshots": [{"segment": 2}],
+                "moduli": [{"segment": 0, "nu": 0.61}, {"segment": 1}, {"segment": 2}]}})");
   dem::run_element_test(dem::Scene::read(Reader(first, "first"), dir), dir / "first");
   Json second = Json::parse(R"({
     "preparation": {"snapshot": "first/snapshots.h5"},

@@ -1,0 +1,30 @@
+// MODULI.csv: small-strain moduli of packings, one row for each packing and strain (docs/formats.md). What
+// `grainlaw probe` and the measure of a scene write, and the fits read.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "grainlaw/element/record.hpp"
+
+namespace grainlaw {
+
+/// Its columns, in order: where the packing comes from (`file`, `frame` only of `grainlaw probe`), its state,
+/// the moduli, the 21 constants.
+const std::vector<std::string>& moduli_columns();
+
+/// Reads one. Throws Error (file, column) for a column that is none of these or lacks, and as
+/// Record::read_csv does. A packing that was refused has a row with empty moduli.
+Record read_moduli(const std::filesystem::path& file);
+
+/// Why the packing of a row has no moduli, from the row itself: no grain bears load, fewer contacts than a
+/// stable balance takes (3 n - 2 between n grains in a box that is held), or forces that are left. NaN where
+/// the row does not say.
+std::string why_no_moduli(double backbone, double contacts, double residual);
+
+/// Fewest contacts between `backbone` grains without friction with which a balance can be stable: 3 n - 3
+/// hold all but the three displacements of the whole, and one more lets them press.
+double isostatic_contacts(double backbone);
+
+}  // namespace grainlaw
