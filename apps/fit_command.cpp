@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 std::vector<fs::path> inputs_in(const fs::path& dir) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(dir))
-    for (const char* name : {"campaign.json", "scene.json", "record.csv", "provenance.json", "snapshots.h5"})
+    for (const char* name : {"campaign.json", "scene.json", "record.csv", "moduli.csv", "provenance.json", "snapshots.h5"})
       if (entry.path().filename() == name) files.push_back(entry.path());
   return files;
 }

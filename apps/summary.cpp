@@ -18,6 +18,41 @@ std::string number(double value) { return fmt::format("{:.4g}", value); }
 
 constexpr std::size_t most_remarks = 8;
 
+/// Calls add(name, parameter) for each of group shear.
+template <class Add>
+void add_shear_rows(const model::ParameterSet& set, const Add& add) {
+  if (!set.shear) return;
+  const std::pair<const char*, const std::optional<model::SaturationLaw>*> laws[] = {
+      {"s_max", &set.shear->s_max},
+      {"beta_s", &set.shear->beta_s},
+      {"F_max", &set.shear->F_max},
+      {"beta_F", &set.shear->beta_F}};
+  for (const auto& [name, law] : laws) {
+    if (!law->has_value()) continue;
+    const std::string group = std::string("shear.") + name + ".";
+    add(group + "Q_max", (*law)->Q_max);
+    add(group + "Q_v", (*law)->Q_v);
+    add(group + "alpha", (*law)->alpha);
+    add(group + "nu_c", (*law)->nu_c);
+  }
+}
+
+/// The same for group moduli.
+template <class Add>
+void add_moduli_rows(const model::ParameterSet& set, const Add& add) {
+  if (!set.moduli) return;
+  const model::ModuliLaws& m = *set.moduli;
+  add("moduli.p0", m.p0);
+  add("moduli.gamma_p", m.gamma_p);
+  add("moduli.nu_c", m.nu_c);
+  add("moduli.a_I", m.a_I);
+  add("moduli.a_II", m.a_II);
+  add("moduli.GB_max", m.GB_max);
+  add("moduli.Fv_min", m.Fv_min);
+  add("moduli.Fv_alpha", m.Fv_alpha);
+  add("moduli.g_I", m.g_I);
+}
+
 /// The fitted parameters with their names, in the order they are shown.
 using Rows = std::vector<std::pair<std::string, const model::Parameter*>>;
 
@@ -38,20 +73,8 @@ Rows fitted_rows(const model::ParameterSet& set) {
     add(group + "phi_c", law.phi_c);
     add(group + "phi_v", law.phi_v);
   }
-  if (!set.shear) return rows;
-  const std::pair<const char*, const std::optional<model::SaturationLaw>*> laws[] = {
-      {"s_max", &set.shear->s_max},
-      {"beta_s", &set.shear->beta_s},
-      {"F_max", &set.shear->F_max},
-      {"beta_F", &set.shear->beta_F}};
-  for (const auto& [name, law] : laws) {
-    if (!law->has_value()) continue;
-    const std::string group = std::string("shear.") + name + ".";
-    add(group + "Q_max", (*law)->Q_max);
-    add(group + "Q_v", (*law)->Q_v);
-    add(group + "alpha", (*law)->alpha);
-    add(group + "nu_c", (*law)->nu_c);
-  }
+  add_shear_rows(set, add);
+  add_moduli_rows(set, add);
   return rows;
 }
 

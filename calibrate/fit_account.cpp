@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "grainlaw/calibrate/fit_moduli_account.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::calibrate {
@@ -291,6 +292,7 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
   }
   for (const ShearQuantity quantity : shear_quantities)
     fit_density(account, quantity, nu_c_error, reference, selection);
+  fit_moduli_of(account, folder, reference);
   return account;
 }
 

@@ -7,6 +7,7 @@
 #include "grainlaw/dem/scene.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/json.hpp"
+#include "grainlaw/element/moduli_table.hpp"
 
 namespace grainlaw::calibrate {
 namespace {
@@ -47,6 +48,15 @@ void check_row_count(const Json& scene, const Path& path, const Record& rows, co
                     std::to_string(rows.rows()) + ": it is cut short or of another scene");
 }
 
+/// Rows must say where on the path they belong.
+std::optional<Record> kept_moduli(const fs::path& file) {
+  if (!fs::exists(file)) return std::nullopt;
+  Record moduli = read_moduli(file);
+  for (const char* column : {"segment", "eps_dev", "backbone", "contacts"})
+    if (!moduli.has(column)) throw Error(file.string(), column, "column is missing");
+  return moduli;
+}
+
 TestRecord read_record(const fs::path& dir, Role role) {
   TestRecord test;
   test.name = dir.filename().string();
@@ -61,6 +71,7 @@ TestRecord read_record(const fs::path& dir, Role role) {
   test.mode = mode_of(test.path);
   test.rows = Record::read_csv(table, needed_columns);
   check_row_count(json, test.path, test.rows, table);
+  test.moduli = kept_moduli(dir / "moduli.csv");
   for (const char* column : {"segment", "eps_vol", "eps_dev", "nu", "P"}) {
     for (const double value : test.rows[column]) {
       if (std::isnan(value))

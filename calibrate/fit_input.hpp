@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct TestRecord {
   double nu_start = 0;  ///< where the path starts
   std::vector<Leg> legs;
   Record rows;
+  std::optional<Record> moduli;  ///< of states along the path, where moduli.csv is kept
 };
 
 /// A record that should be there and is not, or one that no fit takes, and why.

@@ -34,6 +34,12 @@ const Keys<ModuliLaws> moduli_keys{{"p0", &ModuliLaws::p0},         {"gamma_p", 
                                    {"a_I", &ModuliLaws::a_I},       {"a_II", &ModuliLaws::a_II},
                                    {"g_I", &ModuliLaws::g_I},       {"GB_max", &ModuliLaws::GB_max},
                                    {"Fv_min", &ModuliLaws::Fv_min}, {"Fv_alpha", &ModuliLaws::Fv_alpha}};
+const Keys<ModuliLaws> bulk_keys{
+    {"p0", &ModuliLaws::p0}, {"gamma_p", &ModuliLaws::gamma_p}, {"nu_c", &ModuliLaws::nu_c}};
+const Keys<ModuliLaws> first_keys{{"a_I", &ModuliLaws::a_I}}, second_keys{{"a_II", &ModuliLaws::a_II}};
+const Keys<ModuliLaws> initial_keys{
+    {"GB_max", &ModuliLaws::GB_max}, {"Fv_min", &ModuliLaws::Fv_min}, {"Fv_alpha", &ModuliLaws::Fv_alpha}};
+const Keys<ModuliLaws> decrease_keys{{"g_I", &ModuliLaws::g_I}};
 const Keys<MemoryLaws> memory_keys{
     {"phi_SJ", &MemoryLaws::phi_SJ},       {"mu", &MemoryLaws::mu},
     {"beta", &MemoryLaws::beta},           {"alpha_max", &MemoryLaws::alpha_max},
@@ -186,6 +192,19 @@ std::optional<ModuliLaws> Reference::moduli() const {
   return moduli;
 }
 
+KnownValues Reference::moduli_values() const {
+  return set_ && set_->moduli ? values_of(*set_->moduli, moduli_keys) : KnownValues{};
+}
+
+KnownValues Reference::thesis_moduli() const { return same_material_ ? moduli_values() : KnownValues{}; }
+
+Parameter Reference::fabric_factor() const {
+  Parameter g3 = assumed(fabric_size_factor(material_.w), "g3", "Eq. 3.8 for w = " + to_text(material_.w),
+                         thesis_moduli());
+  g3.unit = "1";
+  return g3;
+}
+
 std::optional<MemoryLaws> Reference::memory() const {
   if (!set_ || !set_->memory) return std::nullopt;
   MemoryLaws memory = *set_->memory;
@@ -204,6 +223,19 @@ std::optional<PackingLaw> packing_law(const PackingFit& fit, const KnownValues& 
                      fill(law, pressure_keys, fit.pressure, fallback, thesis, reference);
   if (!known) return std::nullopt;
   law.C0.note = "isostatic number of frictionless spheres; the fit with C0 free is in fits.json";
+  return law;
+}
+
+std::optional<ModuliLaws> moduli_laws(const ModuliFit& fit, const Reference& reference) {
+  const KnownValues fallback = reference.moduli_values(), thesis = reference.thesis_moduli();
+  ModuliLaws law;
+  const bool known = fill(law, bulk_keys, fit.B, fallback, thesis, reference) &&
+                     fill(law, first_keys, fit.A1, fallback, thesis, reference) &&
+                     fill(law, second_keys, fit.A2, fallback, thesis, reference) &&
+                     fill(law, initial_keys, fit.GB_ini, fallback, thesis, reference) &&
+                     fill(law, decrease_keys, fit.G, fallback, thesis, reference);
+  if (!known) return std::nullopt;
+  law.g3 = reference.fabric_factor();
   return law;
 }
 

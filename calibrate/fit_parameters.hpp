@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "grainlaw/calibrate/fit_moduli.hpp"
 #include "grainlaw/calibrate/fit_packing.hpp"
 #include "grainlaw/calibrate/fit_problem.hpp"
 #include "grainlaw/element/material.hpp"
@@ -27,12 +28,17 @@ class Reference {
   /// The same, only where it is the thesis's value for this very material.
   KnownValues thesis_packing(const std::string& mode) const;
   KnownValues thesis_shear(const std::string& quantity) const;
-  /// The groups that no fit fills; source thesis, or assumed where the set is of another w. g3 is Eq. 3.8 for
-  /// the records' own w.
+  /// Group moduli by parameter name, likewise.
+  KnownValues moduli_values() const;
+  KnownValues thesis_moduli() const;
+  /// The groups as a whole, where no fit fills them; source thesis, or assumed where the set is of another w.
+  /// g3 is Eq. 3.8 for the records' own w.
   std::optional<model::ModuliLaws> moduli() const;
   std::optional<model::MemoryLaws> memory() const;
   /// "the thesis's value", "the thesis's value for w = 3", to be used in notes.
   std::string whose() const;
+  /// g3 of Eq. 3.8 for the records' own w, beside that of the thesis where it is of the same w.
+  model::Parameter fabric_factor() const;
 
  private:
   std::optional<model::ParameterSet> set_;
@@ -44,6 +50,8 @@ class Reference {
 /// falls back as a whole. None if a law could not be fitted and nobody knows its values.
 std::optional<model::PackingLaw> packing_law(const PackingFit& fit, const KnownValues& fallback,
                                              const KnownValues& thesis, const Reference& reference);
+/// Group moduli out of its fits; g3 is Eq. 3.8 for the records' own w.
+std::optional<model::ModuliLaws> moduli_laws(const ModuliFit& fit, const Reference& reference);
 /// shear.QUANTITY out of its fit over volume fraction.
 std::optional<model::SaturationLaw> saturation_law(const FitResult& fit, const KnownValues& fallback,
                                                    const KnownValues& thesis, const Reference& reference);

@@ -61,6 +61,17 @@ model::ShearLaws shear_laws(const Account& account, const Reference& reference) 
   return shear;
 }
 
+/// As fitted; that of the thesis where no test has moduli.
+std::optional<model::ModuliLaws> moduli(const Account& account, const Reference& reference) {
+  if (!account.moduli) return reference.moduli();
+  auto group = moduli_laws(*account.moduli, reference);
+  if (group && account.moduli_nu_c_fitted && group->nu_c.value == account.moduli->B.value("nu_c")) {
+    group->nu_c.source = "fit";
+    group->nu_c.note = "nu_c of isotropic.d2";
+  }
+  return group;
+}
+
 }  // namespace
 
 FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::path& thesis,
@@ -79,7 +90,7 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
     if (row) out.parameters.isotropic[mode] = *row;
   }
   out.parameters.shear = shear_laws(account, reference);
-  out.parameters.moduli = reference.moduli();
+  out.parameters.moduli = moduli(account, reference);
   out.parameters.memory = reference.memory();
   out.parameters.closure = {"iso", out.parameters.isotropic.contains("d2") ? "d2" : "iso", false};
   out.fits = account.to_json();

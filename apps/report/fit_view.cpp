@@ -64,6 +64,10 @@ FitView read_fit(const Json& json) {
     fit.row = parts[1];
     fit.family = parts.size() > 2 ? parts[2] : fit.y_name;
   }
+  if (parts[0] == "moduli" && parts.size() > 1) {
+    fit.group = parts[0];
+    fit.family = parts[1];
+  }
   for (const Json& data : value_in(json, "data")) fit.data.push_back(read_points(data));
   fit.curve = read_points(value_in(json, "curve"));
   fit.thesis_curve = read_points(value_in(json, "thesis_curve"));

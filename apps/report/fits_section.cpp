@@ -144,19 +144,20 @@ Markup not_run(const std::vector<FitView>& fits) {
 }
 
 Markup quality(const std::vector<FitView>& fits) {
-  std::vector<const FitView*> isotropic, runs, saturation, other;
+  std::vector<const FitView*> isotropic, runs, saturation, moduli, other;
   for (const FitView& fit : fits) {
     if (fit.idle()) continue;
     auto& family = fit.group == "isotropic" ? isotropic
                    : fit.group == "shear"   ? saturation
+                   : fit.group == "moduli"  ? moduli
                    : fit.of_one_run()       ? runs
                                             : other;
     family.push_back(&fit);
   }
   return "<h3>Residual, condition, exit</h3>\n"_html + quality_of("Isotropic laws", isotropic) +
          quality_of("Shear of single runs", runs) +
-         quality_of("Saturation over volume fraction", saturation) + quality_of("Other fits", other) +
-         not_run(fits) +
+         quality_of("Saturation over volume fraction", saturation) +
+         quality_of("Small-strain moduli", moduli) + quality_of("Other fits", other) + not_run(fits) +
          element("p",
                  "Points in brackets: how many independent points the rows are worth, since neighbouring "
                  "rows of one run resemble each other. Residual: root mean square of data − fit, in the unit "
@@ -184,7 +185,8 @@ Markup fits_section(const Inputs& inputs, const std::vector<FitView>& fits) {
   if (fits.empty()) return absent("No fits: fits.json is not there, or holds none.");
   return "<h3>Isotropic laws</h3>\n"_html + isotropic_figures(inputs, fits) +
          "<h3>Shear at constant volume</h3>\n"_html + shear_run_figures(inputs, fits) +
-         saturation_figure(fits) + other_figures(fits) + quality(fits) + left_out(inputs);
+         saturation_figure(fits) + moduli_figures(inputs, fits) + other_figures(fits) + quality(fits) +
+         left_out(inputs);
 }
 
 }  // namespace grainlaw::report

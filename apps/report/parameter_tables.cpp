@@ -198,6 +198,17 @@ Markup shear_table(const Entries& entries) {
          matrix(entries, "shear", rows, heads, {"Q_max", "Q_v", "alpha", "nu_c"});
 }
 
+/// Nothing where none of the moduli is fitted: they stand among the numbers that are not.
+Markup moduli_table(const Entries& entries) {
+  const bool fitted = std::any_of(entries.begin(), entries.end(), [](const auto& one) {
+    return one.first[0] == "moduli" && one.second.source == "fit";
+  });
+  if (!fitted) return {};
+  return "<h3>Small-strain moduli (Eqs. 4.11 – 4.15), beside Table 4.1</h3>\n"_html +
+         matrix(entries, "moduli", {""}, {"Value"_html},
+                {"p0", "gamma_p", "nu_c", "a_I", "a_II", "GB_max", "Fv_min", "Fv_alpha", "g_I", "g3"});
+}
+
 /// A number that was not fitted here, with every row that shares it.
 struct Taken {
   std::string group, name;
@@ -276,7 +287,7 @@ Markup sources_table(const Entries& entries) {
 Markup parameter_tables(const Inputs& inputs, const std::vector<FitView>& fits) {
   const Entries entries = collect(inputs, fits);
   if (entries.empty()) return absent("No parameters: neither parameters.json nor fits.json holds any.");
-  Markup tables = isotropic_table(inputs, entries) + shear_table(entries);
+  Markup tables = isotropic_table(inputs, entries) + shear_table(entries) + moduli_table(entries);
   tables += element(
       "p",
       "Each cell: our value ± one standard error; under it the thesis's value and our difference from it in "

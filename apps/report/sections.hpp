@@ -32,6 +32,8 @@ Markup isotropic_figures(const Inputs& inputs, const std::vector<FitView>& fits)
 Markup shear_run_figures(const Inputs& inputs, const std::vector<FitView>& fits);
 /// Q(nu) of the four saturation quantities.
 Markup saturation_figure(const std::vector<FitView>& fits);
+/// The moduli of states along D2, a panel per law; nothing where there are none.
+Markup moduli_figures(const Inputs& inputs, const std::vector<FitView>& fits);
 /// Fits of any other kind, one figure each.
 Markup other_figures(const std::vector<FitView>& fits);
 
