@@ -69,6 +69,7 @@ class Calibrate : public Program {
     for (const auto& name : records("whole"))
       EXPECT_EQ(read(dir + "/records/" + name + "/record.csv"), read("whole/records/" + name + "/record.csv"))
           << name;
+    EXPECT_EQ(read(dir + "/records/d2-0.7-s1/moduli.csv"), read("whole/records/d2-0.7-s1/moduli.csv"));
     EXPECT_EQ(read(dir + "/parameters.json"), read("whole/parameters.json"));
     for (const auto& name : listing(dir)) EXPECT_EQ(name.find(".part"), std::string::npos) << name;
   }
@@ -113,6 +114,15 @@ TEST_F(Calibrate, LeavesRecordsParametersPredictionsAndAReport) {
                                                       number + number + "\n"));
     }
   EXPECT_GT(fitted, 0);
+  // Moduli are measured: what so few states do not determine is assumed, and said so.
+  EXPECT_TRUE(has("out/tiny/records/d2-0.74-s1/moduli.csv"));
+  const Json moduli = json("out/tiny/parameters.json").at("moduli");
+  for (const auto& [name, parameter] : moduli.items()) {
+    EXPECT_NE(parameter.at("source"), "thesis") << name;
+    if (parameter.at("source") == "assumed") {
+      EXPECT_NE(parameter.at("note"), "") << name;
+    }
+  }
 }
 
 TEST_F(Calibrate, SIGINTKeepsWhatIsFinishedAndSaysHowToGoOn) {

@@ -141,6 +141,36 @@ TEST_F(ReportTest, SaysWhichNumbersWereNotFitted) {
       html, HasSubstr("<td><var>C</var><sub>0</sub> of D2, ISO</td><td class=\"n\">6</td><td>assumed</td>"));
 }
 
+TEST_F(ReportTest, ShowsModuliBesideTable4_1) {
+  test::write_synthetic_campaign(dir_);
+  EXPECT_THAT(report_html(dir_), Not(HasSubstr("Small-strain moduli</h3>")));
+  const Json points{{"test", "d2-0.711-s1"}, {"x", {0.01, 0.08, 0.12}}, {"y", {0.006, 0.05, 0.08}}};
+  const Json line{{"x", {0, 0.12}}, {"y", {0, 0.08}}};
+  edit("fits.json", [&](Json& json) {
+    json["fits"].push_back(
+        {{"name", "moduli.A1"},
+         {"law", "A1/B = a_I F_dev (Eq. 4.12)"},
+         {"role", "fit"},
+         {"mode", "d2"},
+         {"x", {{"name", "F_dev"}, {"label", "F_dev"}}},
+         {"y", {{"name", "A1"}, {"label", "A1/B"}}},
+         {"data", {points}},
+         {"curve", line},
+         {"thesis_curve", line},
+         {"parameters",
+          {{{"name", "a_I"}, {"value", 0.7}, {"stderr", 0.02}, {"thesis", 0.66}, {"determined", true}}}}});
+  });
+  edit("parameters.json", [](Json& json) {
+    json["moduli"]["a_I"] = {
+        {"value", 0.7}, {"stderr", 0.02}, {"unit", "1"}, {"source", "fit"}, {"thesis", 0.66}};
+  });
+  const std::string html = report_html(dir_);
+  EXPECT_THAT(html, HasSubstr("<h3>Small-strain moduli</h3>"));
+  EXPECT_THAT(html, HasSubstr("<h3>Small-strain moduli (Eqs. 4.11 – 4.15), beside Table 4.1</h3>"));
+  EXPECT_THAT(html, HasSubstr("0.7 ± 0.02</span><div class=\"under\">thesis 0.66"));
+  EXPECT_THAT(html, Not(HasSubstr("<var>a</var><sub>I</sub> (moduli)</td>")));
+}
+
 TEST_F(ReportTest, MarksFitsThatNoPredictionReads) {
   test::write_synthetic_campaign(dir_);
   EXPECT_THAT(page().text, HasSubstr("UNIfor comparison only"));
