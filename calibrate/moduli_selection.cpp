@@ -1,5 +1,6 @@
 #include "grainlaw/calibrate/moduli_selection.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -32,6 +33,18 @@ ModuliState state_at(const Record& table, std::size_t row) {
   return s;
 }
 
+/// Whether strains of the box in every direction cost energy; true where the table does not say.
+bool resists(const Record& table, std::size_t row) {
+  const auto& names = moduli_columns();
+  const auto first = std::find(names.begin(), names.end(), "E_xx_xx");
+  Eigen::Matrix<double, 6, 6> stiffness;
+  auto name = first;
+  for (Eigen::Index a = 0; a < 6; ++a)
+    for (Eigen::Index b = a; b < 6; ++b, ++name)
+      stiffness(a, b) = stiffness(b, a) = field(table, name->c_str(), row);
+  return !stiffness.allFinite() || stiffness.llt().info() == Eigen::Success;
+}
+
 void refuse(const Record& table, std::size_t row, ModuliCount& count) {
   ++count.refused;
   const double eps_dev = field(table, "eps_dev", row);
@@ -51,6 +64,7 @@ std::string ModuliCount::text() const {
       all += (all.empty() ? "" : "; ") + std::to_string(n) + (n == 1 ? " state " : " states ") + what;
   };
   add(unstable, "in no stable balance");
+  add(soft, "that would give way to a strain of the box");
   add(changed, "whose contacts changed under the strain");
   if (!reasons.empty()) all += (all.empty() ? "" : "; ") + reasons;
   return all;
@@ -69,6 +83,8 @@ ModuliSeries moduli_states(const Record& table, const std::string& test, const s
       refuse(table, row, count);
     else if (linear && table["unstable"][row] > 0)
       ++count.unstable;
+    else if (!resists(table, row))
+      ++count.soft;
     else if (table["contacts_changed"][row] > 0)
       ++count.changed;
     else
@@ -80,7 +96,8 @@ ModuliSeries moduli_states(const Record& table, const std::string& test, const s
 
 std::string moduli_rule() {
   return "states along the first loading of d2 tests, brought into balance, with moduli by linear response; "
-         "left out are states that are unjammed, below isostatic, not in balance or in no stable balance";
+         "left out are states that are unjammed, below isostatic, not in balance, in no stable balance, or "
+         "would give way to a strain of the box (a 6x6 that is not positive definite)";
 }
 
 }  // namespace grainlaw::calibrate

@@ -16,10 +16,13 @@ struct ModuliCount {
   std::size_t taken = 0;
   std::size_t refused = 0;   ///< packings without moduli: unjammed, below isostatic, not in balance
   std::size_t unstable = 0;  ///< of linear response, in a balance that is not stable
-  std::size_t changed = 0;   ///< of strains that opened or closed contacts
-  std::string reasons;       ///< why packings were refused, each with its strain
+  /// Whose energy has no minimum over strains of the box (the 6x6 is not positive definite): about to
+  /// rearrange, so that moduli are those of strains without a size.
+  std::size_t soft = 0;
+  std::size_t changed = 0;  ///< of strains that opened or closed contacts
+  std::string reasons;      ///< why packings were refused, each with its strain
 
-  std::size_t left_out() const { return refused + unstable + changed; }
+  std::size_t left_out() const { return refused + unstable + soft + changed; }
   /// "1 state in no stable balance; eps_dev = 0.1: unjammed: no grain bears load"; empty where nothing is
   /// left out.
   std::string text() const;

@@ -127,30 +127,30 @@ TEST(ModuliFits, WithoutStatesNothingIsKnown) {
 
 /// A table with the columns that selections read: amplitude, contacts_changed, unstable, B and the rest.
 Record rows(const std::vector<std::vector<double>>& some) {
-  Record table(moduli_columns());
+  Record out(moduli_columns());
   for (const auto& row : some) {
     std::vector<double> whole(moduli_columns().size(), std::nan(""));
-    table.append(whole);
-    const std::size_t k = table.rows() - 1;
+    out.append(whole);
+    const std::size_t k = out.rows() - 1;
     const char* names[] = {"segment",  "eps_dev",  "amplitude", "B",       "contacts_changed",
                            "unstable", "backbone", "contacts",  "residual"};
-    for (std::size_t i = 0; i < row.size(); ++i) table[names[i]][k] = row[i];
-    for (const char* same : {"A1", "A2", "G_oct", "nu", "sigma_dev", "F_v", "F_dev"}) table[same][k] = row[3];
+    for (std::size_t i = 0; i < row.size(); ++i) out[names[i]][k] = row[i];
+    for (const char* same : {"A1", "A2", "G_oct", "nu", "sigma_dev", "F_v", "F_dev"}) out[same][k] = row[3];
   }
-  return table;
+  return out;
 }
 
 TEST(ModuliSelection, TakesLinearResponseAndNamesWhatItLeavesOut) {
   const double none = std::nan("");
-  const Record table = rows({{0, 0, 0, 0.5, 0, 0, 900, 3000, 1e-11},
-                             {0, 0, 1e-6, 0.7, 0, none, 900, 3000, 1e-11},
-                             {0, 0.1, 0, 0.6, 0, 2, 900, 3000, 1e-11},
-                             {0, 0.2, 0, none, 0, none, 0, 0, 0},
-                             {0, 0.3, 0, none, 0, none, 100, 200, 1e-11},
-                             {0, 0.4, 0, none, 0, none, 900, 3000, 1e-3},
-                             {1, 0.4, 0, 0.4, 0, 0, 900, 3000, 1e-11}});
+  const Record made = rows({{0, 0, 0, 0.5, 0, 0, 900, 3000, 1e-11},
+                            {0, 0, 1e-6, 0.7, 0, none, 900, 3000, 1e-11},
+                            {0, 0.1, 0, 0.6, 0, 2, 900, 3000, 1e-11},
+                            {0, 0.2, 0, none, 0, none, 0, 0, 0},
+                            {0, 0.3, 0, none, 0, none, 100, 200, 1e-11},
+                            {0, 0.4, 0, none, 0, none, 900, 3000, 1e-3},
+                            {1, 0.4, 0, 0.4, 0, 0, 900, 3000, 1e-11}});
   ModuliCount count;
-  const ModuliSeries series = moduli_states(table, "d2-s1", "1", 0, count);
+  const ModuliSeries series = moduli_states(made, "d2-s1", "1", 0, count);
   ASSERT_EQ(series.states.size(), 1u);
   EXPECT_EQ(series.states[0].B, 0.5);
   EXPECT_EQ(count.unstable, 1u);
@@ -163,12 +163,27 @@ TEST(ModuliSelection, TakesLinearResponseAndNamesWhatItLeavesOut) {
       "force");
 }
 
+TEST(ModuliSelection, APackingThatWouldGiveWayIsNoState) {
+  Record made = rows({{0, 0, 0, 0.5, 0, 0, 900, 3000, 1e-11}, {0, 0.1, 0, 0.5, 0, 0, 900, 3000, 1e-11}});
+  const char* names[] = {"xx", "yy", "zz", "yz", "xz", "xy"};
+  for (std::size_t a = 0; a < 6; ++a)
+    for (std::size_t b = a; b < 6; ++b)
+      for (std::size_t k = 0; k < 2; ++k)
+        made[std::string("E_") + names[a] + "_" + names[b]][k] = a == b ? 1 : 0;
+  made["E_xz_xz"][1] = -0.1;
+  ModuliCount count;
+  const ModuliSeries series = moduli_states(made, "d2-s1", "1", 0, count);
+  ASSERT_EQ(series.states.size(), 1u);
+  EXPECT_EQ(series.states[0].eps_dev, 0);
+  EXPECT_EQ(count.text(), "1 state that would give way to a strain of the box");
+}
+
 TEST(ModuliSelection, ProbesThatChangedContactsAreNeverAveragedIn) {
   const double none = std::nan("");
-  const Record table =
+  const Record made =
       rows({{0, 0, 1e-4, 0.5, 0, none, 900, 3000, 1e-11}, {0, 0, -1e-4, 0.7, 3, none, 900, 3000, 1e-11}});
   ModuliCount count;
-  const ModuliSeries series = moduli_states(table, "d2-s1", "1", 0, count);
+  const ModuliSeries series = moduli_states(made, "d2-s1", "1", 0, count);
   ASSERT_EQ(series.states.size(), 1u);
   EXPECT_EQ(series.states[0].B, 0.5);
   EXPECT_EQ(count.changed, 1u);

@@ -27,7 +27,8 @@ std::vector<calibrate::ModuliSeries> all_series() {
       const std::string name = std::string("d2-") + nu + "-s" + std::to_string(seed);
       all.push_back(
           calibrate::moduli_states(read_moduli(table_of(nu, seed)), name, std::to_string(seed), {}, count));
-      EXPECT_EQ(count.text(), "") << name;
+      EXPECT_EQ(count.text(),
+                name == "d2-0.68-s1" ? "1 state that would give way to a strain of the box" : "");
     }
   return all;
 }
@@ -46,14 +47,14 @@ void expect_near(const calibrate::FitEstimate& e, double value, double error) {
 /// docs/moduli.md has these numbers.
 TEST(Moduli, LawsRefitted) {
   const calibrate::ModuliFit fit = refitted(all_series());
-  EXPECT_NEAR(fit.B.value("p0"), 0.0412, 2e-4);
-  EXPECT_NEAR(fit.B.value("gamma_p"), 0.104, 5e-3);
-  EXPECT_NEAR(fit.A1.value("a_I"), 0.727, 5e-3);
-  EXPECT_NEAR(fit.A2.value("a_II"), 1.174, 5e-3);
-  EXPECT_NEAR(fit.GB_ini.value("GB_max"), 0.518, 3e-3);
-  EXPECT_NEAR(fit.GB_ini.value("Fv_min"), 4.44, 0.03);
-  EXPECT_NEAR(fit.GB_ini.value("Fv_alpha"), 1.51, 0.03);
-  EXPECT_NEAR(fit.G.value("g_I"), 128, 2);
+  EXPECT_NEAR(fit.B.value("p0"), 0.0412, 5e-5);  // to the last digit printed
+  EXPECT_NEAR(fit.B.value("gamma_p"), 0.105, 5e-4);
+  EXPECT_NEAR(fit.A1.value("a_I"), 0.727, 5e-4);
+  EXPECT_NEAR(fit.A2.value("a_II"), 1.173, 5e-4);
+  EXPECT_NEAR(fit.GB_ini.value("GB_max"), 0.519, 5e-4);
+  EXPECT_NEAR(fit.GB_ini.value("Fv_min"), 4.38, 5e-3);
+  EXPECT_NEAR(fit.GB_ini.value("Fv_alpha"), 1.56, 5e-3);
+  EXPECT_NEAR(fit.G.value("g_I"), 129, 0.5);
   for (const auto* law : {&fit.B, &fit.A1, &fit.A2, &fit.GB_ini, &fit.G}) EXPECT_TRUE(law->determined());
 }
 
