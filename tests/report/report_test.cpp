@@ -167,7 +167,7 @@ TEST_F(ReportTest, ShowsModuliBesideTable4_1) {
   const std::string html = report_html(dir_);
   EXPECT_THAT(html, HasSubstr("<h3>Small-strain moduli</h3>"));
   EXPECT_THAT(html, HasSubstr("<h3>Small-strain moduli (Eqs. 4.11 – 4.15), beside Table 4.1</h3>"));
-  EXPECT_THAT(html, HasSubstr("0.7 ± 0.02</span><div class=\"under\">thesis 0.66"));
+  EXPECT_THAT(html, HasSubstr("0.700 ± 0.020</span><div class=\"under\">thesis 0.66"));
   EXPECT_THAT(html, Not(HasSubstr("<var>a</var><sub>I</sub> (moduli)</td>")));
 }
 
