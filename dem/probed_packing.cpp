@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "grainlaw/dem/probe.hpp"
 #include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/tensor.hpp"
 
@@ -22,7 +21,7 @@ MinimiseOptions down_to(double residual) {
 
 ProbedPacking::ProbedPacking(const Material& material, const State& state, const StrainTensor& axis,
                              double residual)
-    : axis_(axis), residual_(residual), k_star_(material.stress_unit()), packing_(material, state) {
+    : axis_(axis), k_star_(material.stress_unit()), packing_(material, state) {
   result_ = minimise(packing_, down_to(residual));
   const Measurement m = packing_.measure();
   const Backbone& backbone = packing_.backbone();
@@ -53,12 +52,6 @@ std::vector<double> ProbedPacking::row() {
   const LinearResponse response = linear_response(packing_);
   return row_of(result_.balance.residual, 0, moduli_of(response.stress, axis_), 0, response.unstable,
                 &response.energy);
-}
-
-std::vector<double> ProbedPacking::probed_row(double amplitude) const {
-  const Probe seen = probe(packing_, axis_, amplitude, residual_);
-  return row_of(seen.residual, amplitude, seen.moduli, static_cast<double>(seen.contacts_changed), nothing,
-                nullptr);
 }
 
 std::vector<double> ProbedPacking::row_of(double residual, double amplitude, const Moduli& moduli,

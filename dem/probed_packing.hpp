@@ -33,15 +33,13 @@ class ProbedPacking {
   /// equations of the response cannot be solved.
   std::vector<double> row();
   std::vector<double> row_without_moduli() const;
-  /// The row of a strain of this amplitude (see probe()).
-  std::vector<double> probed_row(double amplitude) const;
 
  private:
   std::vector<double> row_of(double residual, double amplitude, const Moduli& moduli, double changed,
                              double unstable, const Stiffness* energy) const;
 
   StrainTensor axis_;
-  double residual_, k_star_;
+  double k_star_;
   StaticPacking packing_;
   MinimiseResult result_;
   std::vector<double> state_;  ///< nu to contacts
