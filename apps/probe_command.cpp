@@ -2,7 +2,6 @@
 // applied.
 #include <fmt/format.h>
 
-#include <array>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -15,22 +14,18 @@
 #include "grainlaw/apps/elastic_columns.hpp"
 #include "grainlaw/apps/snapshot_scene.hpp"
 #include "grainlaw/apps/terminal.hpp"
-#include "grainlaw/dem/linear_response.hpp"
-#include "grainlaw/dem/minimise.hpp"
-#include "grainlaw/dem/probe.hpp"
+#include "grainlaw/dem/probed_packing.hpp"
 #include "grainlaw/element/error.hpp"
-#include "grainlaw/element/record.hpp"
+#include "grainlaw/element/moduli_table.hpp"
 
 namespace grainlaw::apps {
 
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_over_residual = 1000;  // amplitude; else the strained packing may pass for balanced
 constexpr double rounding = 1e-12;
-constexpr std::array names{"xx", "yy", "zz", "yz", "xz", "xy"};
-constexpr std::size_t constants = 21, undo_columns = 8;
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 struct Arguments {
   std::vector<std::string> snapshots, amplitudes, also;
@@ -54,38 +49,22 @@ StrainTensor axis_of(const std::string& name) {
   throw Error("", "--axis", "must be d2 (-1, 1, 0), d3 (-1/2, -1/2, 1) or uni (0, 0, 1), got " + name);
 }
 
+const std::vector<std::string> undo_columns{"changed_by_volume", "changed_by_shear", "left_by_volume",
+                                            "left_by_shear",     "B_left",           "A1_left",
+                                            "A2_left",           "G_oct_left"};
+
 std::vector<std::string> columns(const Plan& plan) {
-  std::vector<std::string> list{"file",
-                                "frame",
-                                "segment",
-                                "nu",
-                                "P",
-                                "sigma_dev",
-                                "F_v",
-                                "F_dev",
-                                "C_star",
-                                "f_NR",
-                                "residual",
-                                "amplitude",
-                                "B",
-                                "A1",
-                                "A2",
-                                "G_oct",
-                                "contacts_changed",
-                                "unstable"};
-  for (std::size_t a = 0; a < 6; ++a)
-    for (std::size_t b = a; b < 6; ++b) list.push_back(fmt::format("E_{}_{}", names[a], names[b]));
-  if (plan.undo)
-    list.insert(list.end(), {"changed_by_volume", "changed_by_shear", "left_by_volume", "left_by_shear",
-                             "B_left", "A1_left", "A2_left", "G_oct_left"});
+  std::vector<std::string> list = moduli_columns();
+  if (plan.undo) list.insert(list.end(), undo_columns.begin(), undo_columns.end());
   const std::vector<std::string> also = plan.also.names();
   list.insert(list.end(), also.begin(), also.end());
   return list;
 }
 
 Plan plan_of(const Arguments& arguments) {
-  const double residual =
-      arguments.residual.empty() ? 1e-10 : read_number("--residual", arguments.residual, between(1e-13, 0.1));
+  const double residual = arguments.residual.empty()
+                              ? dem::ProbedPacking::balance
+                              : read_number("--residual", arguments.residual, between(1e-13, 0.1));
   Plan plan{axis_of(arguments.axis), {}, residual, arguments.undo, ElasticColumns(arguments.also)};
   if (plan.undo && arguments.amplitudes.empty())
     throw Error("", "--undo", "must come with a strain to undo: --amplitude");
@@ -99,78 +78,46 @@ Plan plan_of(const Arguments& arguments) {
   return plan;
 }
 
-/// What is measured of one packing, row by row.
-class Probing {
+/// The rows of one packing that has moduli: what the options ask for stands behind the columns of every
+/// table.
+class Rows {
  public:
-  Probing(const Plan& plan, const Material& material, const dem::State& state, std::vector<double> place)
-      : plan_(plan),
-        material_(material),
-        k_star_(material.stress_unit()),
-        packing_(material, state),
-        head_(std::move(place)) {
-    dem::MinimiseOptions options;
-    options.residual = plan.residual;
-    result_ = dem::minimise(packing_, options);
-    const dem::Measurement m = packing_.measure();
-    head_.insert(head_.end(),
-                 {m.nu, trace(m.stress) / 3 / k_star_, deviator_along(m.stress, plan.axis) / k_star_,
-                  trace(m.fabric), deviator_along(m.fabric, plan.axis), m.C_star, m.f_NR});
-  }
-  bool in_balance() const { return result_.outcome != dem::Outcome::gave_up; }
-  bool bears_load() const { return result_.balance.jammed; }
-  std::string text() const { return result_.text(); }
+  Rows(const Plan& plan, const Material& material, dem::ProbedPacking& packing)
+      : plan_(plan), material_(material), packing_(packing) {}
 
-  /// The rows of this packing.
-  std::vector<std::vector<double>> rows() {
-    std::vector<std::vector<double>> list{elastic_row()};
+  std::vector<std::vector<double>> all() {
+    std::vector<std::vector<double>> list{of_response()};
     for (const double amplitude : plan_.amplitudes)
-      for (const double strain : {amplitude, -amplitude})
-        list.push_back(
-            row(dem::probe(packing_, plan_.axis, strain, {.residual = plan_.residual, .undo = plan_.undo})));
+      for (const double strain : {amplitude, -amplitude}) list.push_back(of_strain(strain));
     return list;
   }
 
  private:
-  std::vector<double> elastic_row() {
-    const dem::LinearResponse response = dem::linear_response(packing_);
-    std::vector<double> row =
-        start(result_.balance.residual, 0, dem::moduli_of(response.stress, plan_.axis), 0, response.unstable);
-    for (std::size_t a = 0; a < 6; ++a)
-      for (std::size_t b = a; b < 6; ++b) row.push_back(response.energy[a][b] / k_star_);
-    if (plan_.undo) row.insert(row.end(), undo_columns, nothing);
-    const std::vector<double> also = plan_.also.values(packing_, response, material_);
+  std::vector<double> of_response() {
+    const dem::LinearResponse response = packing_.response();
+    std::vector<double> row = packing_.row(response);
+    if (plan_.undo) row.insert(row.end(), undo_columns.size(), nothing);
+    const std::vector<double> also = plan_.also.values(packing_.packing(), response, material_);
     row.insert(row.end(), also.begin(), also.end());
     return row;
   }
-
-  std::vector<double> row(const dem::Probe& probe) const {
-    std::vector<double> row =
-        start(probe.residual, probe.amplitude, probe.moduli, count(probe.changed.both()), nothing);
-    row.insert(row.end(), constants, nothing);
+  std::vector<double> of_strain(double strain) const {
+    const dem::Probe probe = packing_.probe(strain, plan_.undo);
+    const double k_star = material_.stress_unit();
+    std::vector<double> row = packing_.row(probe);
     if (plan_.undo)
       row.insert(row.end(), {count(probe.changed.by_volume), count(probe.changed.by_shear),
                              count(probe.contacts_left.by_volume), count(probe.contacts_left.by_shear),
-                             probe.left.B / k_star_, probe.left.A1 / k_star_, probe.left.A2 / k_star_,
-                             probe.left.G_oct / k_star_});
+                             probe.left.B / k_star, probe.left.A1 / k_star, probe.left.A2 / k_star,
+                             probe.left.G_oct / k_star});
     row.insert(row.end(), plan_.also.names().size(), nothing);
-    return row;
-  }
-
-  std::vector<double> start(double residual, double amplitude, const dem::Moduli& moduli, double changed,
-                            double unstable) const {
-    std::vector<double> row = head_;
-    row.insert(row.end(), {residual, amplitude, moduli.B / k_star_, moduli.A1 / k_star_, moduli.A2 / k_star_,
-                           moduli.G_oct / k_star_, changed, unstable});
     return row;
   }
   static double count(std::uint64_t n) { return static_cast<double>(n); }
 
   const Plan& plan_;
-  Material material_;
-  double k_star_;
-  dem::StaticPacking packing_;
-  dem::MinimiseResult result_;
-  std::vector<double> head_;
+  const Material& material_;
+  dem::ProbedPacking& packing_;
 };
 
 /// The snapshots of one file, all opened before the work begins.
@@ -206,15 +153,20 @@ Found probe_frame(const Plan& plan, const Input& input, std::size_t number, std:
   const dem::FrameChoice choice{.nu = {}, .frame = frame, .segment = {}};
   const dem::Frame read = dem::read_whole_frame(input.file, choice);
   const dem::Scene scene = scene_of_frame(input.scene, input.file, choice, read.state);
+  const std::vector<double> place{static_cast<double>(number), static_cast<double>(frame),
+                                  static_cast<double>(read.observables.segment), read.observables.eps_dev};
+  const auto add = [&](const std::vector<double>& row) {
+    std::vector<double> whole = place;
+    whole.insert(whole.end(), row.begin(), row.end());
+    record.append(whole);
+  };
   try {
-    Probing probing(plan, scene.material, read.state,
-                    {static_cast<double>(number), static_cast<double>(frame),
-                     static_cast<double>(read.observables.segment)});
-    if (!probing.in_balance() || !probing.bears_load()) {
-      left_out(probing.text());
-      return probing.in_balance() ? Found::no_load : Found::no_balance;
+    dem::ProbedPacking packing(scene.material, read.state, plan.axis, plan.residual);
+    if (const std::string why = packing.refusal(); !why.empty()) {
+      left_out(why);
+      return packing.in_balance() ? Found::no_load : Found::no_balance;
     }
-    for (const std::vector<double>& row : probing.rows()) record.append(row);
+    for (const auto& row : Rows(plan, scene.material, packing).all()) add(row);
     return Found::moduli;
   } catch (const Error& error) {
     left_out(error.what());

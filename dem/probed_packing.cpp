@@ -21,7 +21,7 @@ MinimiseOptions down_to(double residual) {
 
 ProbedPacking::ProbedPacking(const Material& material, const State& state, const StrainTensor& axis,
                              double residual)
-    : axis_(axis), k_star_(material.stress_unit()), packing_(material, state) {
+    : axis_(axis), residual_(residual), k_star_(material.stress_unit()), packing_(material, state) {
   result_ = minimise(packing_, down_to(residual));
   const Measurement m = packing_.measure();
   const Backbone& backbone = packing_.backbone();
@@ -37,10 +37,10 @@ ProbedPacking::ProbedPacking(const Material& material, const State& state, const
 }
 
 std::string ProbedPacking::refusal() const {
-  const auto grains = static_cast<double>(packing_.backbone().grains());
-  const auto contacts = static_cast<double>(packing_.backbone().contacts());
-  if (in_balance() && grains > 0 && contacts >= isostatic_contacts(grains)) return "";
-  return why_no_moduli(grains, contacts, result_.balance.residual);
+  const Backbone& backbone = packing_.backbone();
+  if (in_balance() && backbone.grains() > 0 && backbone.contacts() >= backbone.isostatic()) return "";
+  return why_no_moduli(static_cast<double>(backbone.grains()), static_cast<double>(backbone.contacts()),
+                       result_.balance.residual);
 }
 
 std::vector<double> ProbedPacking::row_without_moduli() const {
@@ -49,9 +49,21 @@ std::vector<double> ProbedPacking::row_without_moduli() const {
 
 std::vector<double> ProbedPacking::row() {
   if (!refusal().empty()) return row_without_moduli();
-  const LinearResponse response = linear_response(packing_);
+  return row(response());
+}
+
+std::vector<double> ProbedPacking::row(const LinearResponse& response) const {
   return row_of(result_.balance.residual, 0, moduli_of(response.stress, axis_), 0, response.unstable,
                 &response.energy);
+}
+
+Probe ProbedPacking::probe(double amplitude, bool undo) const {
+  return dem::probe(packing_, axis_, amplitude, {.residual = residual_, .undo = undo});
+}
+
+std::vector<double> ProbedPacking::row(const Probe& probe) const {
+  return row_of(probe.residual, probe.amplitude, probe.moduli, static_cast<double>(probe.changed.both()),
+                nothing, nullptr);
 }
 
 std::vector<double> ProbedPacking::row_of(double residual, double amplitude, const Moduli& moduli,

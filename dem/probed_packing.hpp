@@ -6,6 +6,7 @@
 
 #include "grainlaw/dem/linear_response.hpp"
 #include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/probe.hpp"
 #include "grainlaw/dem/state.hpp"
 #include "grainlaw/dem/static_packing.hpp"
 #include "grainlaw/element/material.hpp"
@@ -33,13 +34,21 @@ class ProbedPacking {
   /// equations of the response cannot be solved.
   std::vector<double> row();
   std::vector<double> row_without_moduli() const;
+  std::vector<double> row(const LinearResponse& response) const;
+  /// The row of a strain that was applied.
+  std::vector<double> row(const Probe& probe) const;
+
+  LinearResponse response() { return linear_response(packing_); }
+  /// Strains copies of it (see dem/probe.hpp).
+  Probe probe(double amplitude, bool undo) const;
+  const StaticPacking& packing() const { return packing_; }
 
  private:
   std::vector<double> row_of(double residual, double amplitude, const Moduli& moduli, double changed,
                              double unstable, const Stiffness* energy) const;
 
   StrainTensor axis_;
-  double k_star_;
+  double residual_, k_star_;
   StaticPacking packing_;
   MinimiseResult result_;
   std::vector<double> state_;  ///< nu to contacts
