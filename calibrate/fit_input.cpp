@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "grainlaw/calibrate/kept_record.hpp"
 #include "grainlaw/dem/scene.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/json.hpp"
@@ -96,9 +97,7 @@ std::string why_left_out(const fs::path& dir) {
   Reader reader(load_json(scene), scene.string());
   if (Path::read(reader.object("path")).by_stress())
     return "its path is under stress control, and the law follows strains";
-  if (!fs::exists(provenance)) return "";
-  const Json json = load_json(provenance);
-  return json.contains("cut_short") ? json["cut_short"].get<std::string>() : "";
+  return fs::exists(provenance) ? cut_short(dir) : "";
 }
 
 RecordFolder read_campaign(const fs::path& dir) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "grainlaw/element/json.hpp"
 
@@ -11,6 +12,9 @@ namespace grainlaw::calibrate {
 /// The record in `dir` must be whole (its files are there and can be read, it has the rows that its scene
 /// asks for) and of `scene`, the one that the campaign wants.
 void check_kept_record(const std::filesystem::path& dir, const Json& scene);
+
+/// Why the record in `dir` ends before its path does; empty where it does not.
+std::string cut_short(const std::filesystem::path& dir);
 
 /// Its snapshots must be readable, for another test to start from.
 void check_kept_snapshots(const std::filesystem::path& dir);

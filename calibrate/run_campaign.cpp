@@ -68,6 +68,7 @@ class Runner {
   void halt();
   void work();
   Ending run_job(std::size_t job);
+  void check_origin(const Job& job) const;
   dem::RunSummary run_test(std::size_t job);
   void handle(const Ending& ending);
   void handle_failure(std::size_t job, const Failure& failure);
@@ -114,7 +115,8 @@ void Runner::clear() {
   for (const Job& job : jobs_) {
     if (!job.needs || folder_.has_record(job.record)) continue;
     const std::string& producer = jobs_[*job.needs].record;
-    if (folder_.has_record(producer)) check_kept_snapshots(folder_.record(producer));
+    if (folder_.has_record(producer) && cut_short(folder_.record(producer)).empty())
+      check_kept_snapshots(folder_.record(producer));
   }
 }
 
@@ -195,8 +197,19 @@ Ending Runner::run_job(std::size_t job) {
   }
 }
 
+/// Throws Error where the test that this one starts from ended before it came to that state.
+void Runner::check_origin(const Job& job) const {
+  if (!job.needs) return;
+  const std::string& producer = jobs_[*job.needs].record;
+  const fs::path dir = folder_.record(producer);
+  const std::string why = fs::exists(dir / "provenance.json") ? cut_short(dir) : "";
+  if (!why.empty() && !fs::exists(dir / "snapshots.h5"))
+    throw Error("starts from " + producer + ", which did not get there: " + why);
+}
+
 dem::RunSummary Runner::run_test(std::size_t index) {
   const Job& job = jobs_[index];
+  check_origin(job);
   const fs::path part = folder_.part(job.record);
   fs::create_directory(part);  // before the scene is read: its snapshot is looked for from here
   const dem::Scene scene = dem::Scene::read(Reader(job.scene, job.record), part);

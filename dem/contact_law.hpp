@@ -24,4 +24,7 @@ struct LinearContact {
   static LinearContact of(const Material& material) { return {material.k, material.gamma}; }
 };
 
+/// The law that the engine is built with; all its loops are compiled for this one.
+using ContactLaw = LinearContact;
+
 }  // namespace grainlaw::dem

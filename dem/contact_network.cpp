@@ -4,7 +4,7 @@
 
 namespace grainlaw::dem {
 
-void ContactNetwork::build(const LinearContact& law, const Pairs& list, const Cell& cell, Grains& grains) {
+void ContactNetwork::build(const ContactLaw& law, const Pairs& list, const Cell& cell, Grains& grains) {
   if (pairs.size() < list.count()) {
     pairs.resize(list.count());
     normal.resize(list.count());

@@ -30,7 +30,7 @@ struct ContactNetwork {
 
   /// Takes the contacts (overlap >= 0) of the places as they are, and fills grains.force with the net elastic
   /// forces.
-  void build(const LinearContact& law, const Pairs& list, const Cell& cell, Grains& grains);
+  void build(const ContactLaw& law, const Pairs& list, const Cell& cell, Grains& grains);
 };
 
 }  // namespace grainlaw::dem

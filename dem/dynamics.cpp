@@ -25,6 +25,7 @@ double time_step(const Material& material, double smallest_radius, double fracti
 }
 
 double step_of_contact_error(double error) {
+  if (error < 1e-6) return std::sqrt(24 * error) / std::numbers::pi * (1 - 0.85 * error);  // to error^2
   double y = std::sqrt(6 * error);  // sin(y)/y = 1 - error, to leading order; then by Newton's steps
   for (int i = 0; i < 8; ++i) {
     const double slope = (y * std::cos(y) - std::sin(y)) / (y * y);
@@ -35,7 +36,7 @@ double step_of_contact_error(double error) {
 
 Dynamics::Dynamics(const Material& material, const State& state, int threads)
     : material_(material),
-      law_(LinearContact::of(material)),
+      law_(ContactLaw::of(material)),
       cell_(state.box),
       grains_(state, material.rho),
       neighbours_(material.r_mean, grains_.largest_radius()),
@@ -46,7 +47,7 @@ Dynamics::Dynamics(const Material& material, const State& state, int threads)
 }
 
 Dynamics::Dynamics(const Material& material, ArchiveReader& archive, int threads)
-    : material_(material), law_(LinearContact::of(material)), neighbours_(material.r_mean, 0) {
+    : material_(material), law_(ContactLaw::of(material)), neighbours_(material.r_mean, 0) {
   keep(*this, archive);
   neighbours_.rebuild(grains_);
   assemble(threads);

@@ -70,7 +70,7 @@ class Dynamics {
   int threads() const { return team_ ? team_->threads() : 1; }
   const Grains& grains() const { return grains_; }  ///< sorted in space, not as in the State
   const Neighbours& neighbours() const { return neighbours_; }
-  const LinearContact& law() const { return law_; }
+  const ContactLaw& law() const { return law_; }
   const Material& material() const { return material_; }
 
   /// Fluctuation velocities of the full step, mm/us, in the order of grains().
@@ -97,7 +97,7 @@ class Dynamics {
   void compute_forces();
 
   Material material_;
-  LinearContact law_;
+  ContactLaw law_;
   Cell cell_;
   Grains grains_;
   Neighbours neighbours_;
@@ -117,7 +117,7 @@ inline double contact_error_of(double fraction) {
   const double half = std::numbers::pi / 2 * fraction;
   return 1 - half / std::asin(half);
 }
-/// Its inverse: the fraction of t_c at which a contact lasts too short by a share `error`, in (0, 0.3].
+/// Its inverse: the fraction of t_c at which a contact lasts too short by a share `error`, in [1e-12, 0.3].
 double step_of_contact_error(double error);
 
 }  // namespace grainlaw::dem

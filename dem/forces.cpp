@@ -32,7 +32,7 @@ constexpr std::size_t fetched_ahead = 3;
 
 /// What the loops need beside the grains.
 struct Constants {
-  LinearContact law;
+  ContactLaw law;
   Wide gx, gy, gz;     // the velocity gradient's diagonal
   Wide gyz, gxz, gxy;  // yz and zy together, ...: along the branch only the symmetric part acts
   Wide apart = wide_quad({1, 1, 1, -1});  // turns a difference of places into branch | r_i + r_j
@@ -76,24 +76,26 @@ HWY_INLINE void act(Wide strength, const Wide (&branch)[4], Wide (&total)[4], co
   if constexpr (lanes == 8) subtract(upper(f), force[partner[k + second]]);
 }
 
-/// Each group of grains stays in registers, places, velocities and forces, while it meets its partners.
 /// Fetches what the partners of a group need.
+template <Motion of>
 HWY_INLINE void fetch(const GroupedPairs::Group& group, const Groups& list, const Quad* place,
                       const Quad* motion, Quad* force) {
   for (std::uint32_t p = group.first; p < group.last; ++p) {
     const std::uint32_t j = list.partner[p];
     hwy::Prefetch(place + j);
-    hwy::Prefetch(motion + j);
+    if constexpr (of != Motion::none) hwy::Prefetch(motion + j);
     hwy::Prefetch(force + j);
   }
 }
 
+/// Each group of grains stays in registers, places, velocities and forces, while it meets its partners.
 template <Motion of, bool far>
 void add_forces_within(const Constants& constants, const Quad* place, const Quad* motion, const Groups& list,
                        Quad* force) {
-  for (const GroupedPairs::Group& group : list.groups) {
+  for (std::size_t g = 0; g < list.groups.size(); ++g) {
+    const GroupedPairs::Group& group = list.groups[g];
     if constexpr (far)
-      fetch(*std::min(&group + fetched_ahead, &list.groups.back()), list, place, motion, force);
+      fetch<of>(list.groups[std::min(g + fetched_ahead, list.groups.size() - 1)], list, place, motion, force);
     for (std::size_t half = 0; half < GroupedPairs::width; half += lanes) {
       const std::uint32_t* const grain = &group.grain[half];
       Wide place_i[4], motion_i[4], total[4];
@@ -158,7 +160,7 @@ void add_forces_across(const Constants& constants, const Quad* place, const Quad
 }
 
 template <Motion of>
-void add_to_each(const LinearContact& law, const Grains& grains, const Mat3& gradient, const Groups& within,
+void add_to_each(const ContactLaw& law, const Grains& grains, const Mat3& gradient, const Groups& within,
                  const CrossingPairs& crossing, const Quad* shifts, Quad* force) {
   const auto both = [&](std::size_t a, std::size_t b) { return wide(gradient(a, b) + gradient(b, a)); };
   const Constants constants{
@@ -173,7 +175,7 @@ void add_to_each(const LinearContact& law, const Grains& grains, const Mat3& gra
   add_forces_across<of>(constants, place, motion, crossing, shifts, force);
 }
 
-void add_forces(const LinearContact& law, const Grains& grains, const Cell& cell, const Groups& within,
+void add_forces(const ContactLaw& law, const Grains& grains, const Cell& cell, const Groups& within,
                 const CrossingPairs& crossing, const Quad* shifts, Quad* force) {
   const auto add = cell.tilted() ? add_to_each<Motion::tilted> : add_to_each<Motion::straight>;
   (law.damped() ? add : add_to_each<Motion::none>)(law, grains, cell.gradient(), within, crossing, shifts,
@@ -193,7 +195,7 @@ HWY_EXPORT(lanes_here);
 
 std::size_t force_lanes() { return HWY_DYNAMIC_DISPATCH(lanes_here)(); }
 
-void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, Grains& grains) {
+void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains) {
   const std::array<Quad, 27> shifts = cell.shifts();
   std::fill(grains.force.begin(), grains.force.end(), Quad{});
   HWY_DYNAMIC_DISPATCH(add_forces)
@@ -201,7 +203,7 @@ void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& ce
    grains.force.data());
 }
 
-void contact_forces(const LinearContact& law, const Pairs& pairs, const Cell& cell, Share& share,
+void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share,
                     Grains& grains) {
   const std::array<Quad, 27> shifts = cell.shifts();
   const auto begin = share.force.begin() + share.first, end = share.force.begin() + share.last;

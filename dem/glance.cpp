@@ -4,7 +4,7 @@
 
 namespace grainlaw::dem {
 
-Glance glance(const LinearContact& law, const Grains& grains, const Cell& cell, const Pairs& pairs) {
+Glance glance(const ContactLaw& law, const Grains& grains, const Cell& cell, const Pairs& pairs) {
   Glance seen;
   for (std::size_t i = 0; i < grains.count(); ++i) {
     const Quad& v = grains.motion[i];

@@ -18,6 +18,6 @@ struct Glance {
   std::uint64_t contacts = 0;
 };
 
-Glance glance(const LinearContact& law, const Grains& grains, const Cell& cell, const Pairs& pairs);
+Glance glance(const ContactLaw& law, const Grains& grains, const Cell& cell, const Pairs& pairs);
 
 }  // namespace grainlaw::dem

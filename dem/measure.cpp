@@ -37,7 +37,7 @@ double closing_speed(const Contact& c, const std::vector<Quad>& velocity, const 
   return -dot(c.branch, relative) / c.distance;
 }
 
-Sym6 static_stress(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
+Sym6 static_stress(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
                    const Cell& cell, const Pairs& pairs) {
   Sym6 stress{};
   for_each_contact(pairs, grains, cell, [&](const Contact& c) {
@@ -47,7 +47,7 @@ Sym6 static_stress(const LinearContact& law, const Grains& grains, const std::ve
   return stress;
 }
 
-Energies energies(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
+Energies energies(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
                   const Cell& cell, const Pairs& pairs) {
   Energies e;
   for (std::size_t i = 0; i < grains.count(); ++i) e.kinetic += kinetic_energy(grains, velocity, i);
@@ -55,7 +55,7 @@ Energies energies(const LinearContact& law, const Grains& grains, const std::vec
   return e;
 }
 
-Measurement measure(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
+Measurement measure(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
                     const Cell& cell, const Pairs& pairs) {
   Measurement m;
   std::vector<std::uint32_t> contacts_of(grains.count(), 0);

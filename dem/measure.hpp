@@ -37,15 +37,15 @@ struct Energies {
 double closing_speed(const Contact& contact, const std::vector<Quad>& velocity, const Cell& cell);
 
 /// Measurement::stress alone, for a servo.
-Sym6 static_stress(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
+Sym6 static_stress(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
                    const Cell& cell, const Pairs& pairs);
 /// Measurement::kinetic and elastic alone, for a relaxation.
-Energies energies(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
+Energies energies(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
                   const Cell& cell, const Pairs& pairs);
 
 /// Everything at once. `velocity` is the fluctuation velocity at the time of the positions, mm/us, in the
 /// order of the grains.
-Measurement measure(const LinearContact& law, const Grains& grains, const std::vector<Quad>& velocity,
+Measurement measure(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
                     const Cell& cell, const Pairs& pairs);
 
 }  // namespace grainlaw::dem

@@ -21,7 +21,7 @@ constexpr std::int64_t most_rows = 100'000, most_segments = 1'000'000;
 constexpr double fastest = 1e6;       // mm/us, 1/us: far beyond sense, so that nothing overflows
 constexpr double densest_gas = 0.45;  ///< random placement without overlap slows down without limit beyond
 constexpr double largest_step = 0.2;  ///< of the smallest contact duration
-constexpr double largest_contact_error = 0.0169;  ///< at that step
+constexpr double smallest_contact_error = 1e-12, largest_contact_error = 0.0169;  ///< at that step
 constexpr double radius_slack =
     0.01;  ///< mean and spread of radii may differ so much from the material's, in r_mean
 constexpr double target_slack = 1e-9;  ///< a target equal to an end of its segment up to rounding is inside
@@ -222,7 +222,7 @@ double read_step(Reader& reader, const std::string& key, double fallback) {
   if (!reader.has(key) || !reader.raw(key).is_object())
     return reader.number(key, above_up_to(0, largest_step), fallback);
   Reader wanted = reader.object(key);
-  const double error = wanted.number("error", above_up_to(0, largest_contact_error));
+  const double error = wanted.number("error", between(smallest_contact_error, largest_contact_error));
   wanted.finish();
   return step_of_contact_error(error);
 }

@@ -10,7 +10,7 @@ namespace grainlaw::dem {
 
 StaticPacking::StaticPacking(const Material& material, const State& state)
     : material_(material),
-      law_(LinearContact::of(material)),
+      law_(ContactLaw::of(material)),
       cell_(state.box),
       grains_(state, material.rho),
       neighbours_(material.r_mean, grains_.largest_radius()),

@@ -38,7 +38,7 @@ class StaticPacking {
   Grains& grains() { return grains_; }
   const Grains& grains() const { return grains_; }
   const Cell& cell() const { return cell_; }
-  const LinearContact& law() const { return law_; }
+  const ContactLaw& law() const { return law_; }
   const ContactNetwork& network() const { return network_; }
   const Backbone& backbone() const { return backbone_; }
   double unit_of_length() const { return unit_; }  ///< the mean radius, mm
@@ -64,7 +64,7 @@ class StaticPacking {
 
  private:
   Material material_;
-  LinearContact law_;  ///< without viscosity
+  ContactLaw law_;  ///< without viscosity
   Cell cell_;
   Grains grains_;
   Neighbours neighbours_;

@@ -112,6 +112,25 @@ TEST_F(RunCampaign, ARecordThatWasCutShortIsKept) {
   EXPECT_EQ(run_campaign(campaign, open(CampaignFolder::Use::resume), options()).reused, 6u);
 }
 
+TEST_F(RunCampaign, TestsThatStartWhereNobodyCameSayWhy) {
+  auto o = options();
+  o.run_test = [&](const dem::Scene& scene, const fs::path& part, const dem::RunHooks&) {
+    auto summary = write_record(scene, part);
+    if (part.stem() != "iso-s1") return summary;
+    write_file(part / "provenance.json", R"({"cut_short": "the target is out of reach"})");
+    fs::remove(part / "snapshots.h5");
+    return summary;
+  };
+  // Again and again: what is whole is kept, and the rest is not in its way.
+  for (const auto use : {CampaignFolder::Use::fresh, CampaignFolder::Use::resume}) {
+    const auto result = run_campaign(campaign, open(use), o);
+    ASSERT_EQ(result.failed.size(), 2u);
+    for (const auto& failed : result.failed)
+      EXPECT_EQ(failed.error, "starts from iso-s1, which did not get there: the target is out of reach");
+    EXPECT_TRUE(fs::exists(dir / "records/d2-0.7-s2/record.csv"));
+  }
+}
+
 TEST_F(RunCampaign, RunsAsManyAtATimeAsAsked) {
   auto o = options();
   std::atomic<int> now{0}, most{0};

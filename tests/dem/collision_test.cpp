@@ -157,7 +157,7 @@ double simulated_duration(const Material& elastic, double fraction) {
 TEST(Collision, StepOfAWantedContactError) {
   Material elastic = without_background();
   elastic.gamma = 0;
-  for (const double error : {1e-5, 1e-3, 0.01, 0.0169}) {
+  for (const double error : {9.99e-7, 1.01e-6, 1e-5, 1e-3, 0.01, 0.0169}) {
     const double fraction = step_of_contact_error(error);
     EXPECT_NEAR(contact_error_of(fraction), error, 1e-13);
     EXPECT_NEAR(fraction, std::sqrt(24 * error) / std::numbers::pi, error * fraction);
@@ -166,6 +166,7 @@ TEST(Collision, StepOfAWantedContactError) {
     EXPECT_NEAR(1 - simulated_duration(elastic, fraction), error, 1e-6 * error + 5e-9);
   }
   EXPECT_LT(step_of_contact_error(0.0169), 0.2);
+  EXPECT_NEAR(step_of_contact_error(1e-12) * std::numbers::pi / std::sqrt(24e-12), 1, 1e-11);
 }
 
 }  // namespace

@@ -57,9 +57,9 @@ TEST(Scene, AStepMayBeChosenByItsError) {
   EXPECT_NEAR(scene.measure.time_step, 0.0493, 1e-4);
   EXPECT_EQ(scene.to_json()["measure"]["time_step"], scene.measure.time_step);
   EXPECT_THAT(refusal(with("measure", R"({"time_step": {"error": 0.02}})")),
-              testing::HasSubstr("measure.time_step.error: must be > 0 and <= 0.0169, got 0.02"));
+              testing::HasSubstr("measure.time_step.error: must be >= 1e-12 and <= 0.0169, got 0.02"));
   EXPECT_THAT(refusal(with("measure", R"({"time_step_gas": {"error": 0}})")),
-              testing::HasSubstr("measure.time_step_gas.error: must be > 0"));
+              testing::HasSubstr("measure.time_step_gas.error: must be >= 1e-12"));
   EXPECT_THAT(refusal(with("measure", R"({"time_step": {"wanted": 1e-3}})")),
               testing::HasSubstr("measure.time_step"));
 }
