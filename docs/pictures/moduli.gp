@@ -4,7 +4,7 @@ set encoding utf8
 set terminal pngcairo size 1500,900 font "sans-serif,14" background "#ffffff" linewidth 1.3 enhanced
 set datafile separator comma
 set datafile columnheaders
-set multiplot layout 2,3 margins 0.06,0.985,0.085,0.97 spacing 0.075,0.12
+set multiplot layout 2,3 margins 0.065,0.985,0.085,0.97 spacing 0.078,0.12
 set border 3 lc "#444444"
 set tics nomirror textcolor "#222222"
 set pointsize 0.5
@@ -33,7 +33,7 @@ F_v(v) = 1.22475*v*contacts(v)*bearing(v)
 slope(v) = 1 + v*(7.9219*0.5769/0.6601*excess(v)**(0.5769 - 1)/contacts(v) + 15.001/0.6601*(1 - bearing(v))/bearing(v))
 bulk(v, p0, gamma, nu_c) = (e = log(v/nu_c), p0*F_v(v)/(1.22475*nu_c)*(1 - 2*gamma*e + e*(1 - gamma*e)*slope(v)))
 
-set xlabel "isotropic fabric F_v"; set ylabel "bulk modulus B"
+set xlabel "isotropic fabric F_v"; set ylabel "bulk modulus B/k*" offset 1,0
 set key top left reverse Left
 plot sample [v=0.675:0.815] "+" using (F_v($1)):(bulk($1, p0, gamma_p, 0.6581)) with lines lc rgb red lw 2 title "Eq. 4.11, fit", \
      [v=0.675:0.815] "+" using (F_v($1)):(bulk($1, 0.0425, 0.2, 0.658)) with lines dt 2 lc "black" title "thesis", \
