@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/jacobi.hpp"
 
 namespace grainlaw {
 
@@ -13,21 +14,6 @@ namespace {
 
 constexpr std::array<std::array<std::size_t, 2>, 6> indices{{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
 const double root = std::sqrt(2.0);
-
-/// A rotation in the plane of axes p and q that makes m(p, q) vanish.
-void rotate(Stiffness& m, std::size_t p, std::size_t q) {
-  if (m[p][q] == 0) return;
-  const double ratio = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-  const double t = std::copysign(1 / (std::abs(ratio) + std::sqrt(1 + ratio * ratio)), ratio);
-  const double c = 1 / std::sqrt(1 + t * t), s = t * c;
-  const auto turn = [&](double& a, double& b) {
-    const double first = c * a - s * b;
-    b = s * a + c * b;
-    a = first;
-  };
-  for (std::size_t k = 0; k < 6; ++k) turn(m[k][p], m[k][q]);
-  for (std::size_t k = 0; k < 6; ++k) turn(m[p][k], m[q][k]);
-}
 
 }  // namespace
 
@@ -75,7 +61,7 @@ Sym6 eigenvalues(const Stiffness& c) {
     for (std::size_t b = 0; b < a; ++b) m[a][b] = m[b][a] = 0.5 * (m[a][b] + m[b][a]);
   for (int sweep = 0; sweep < sweeps; ++sweep)
     for (std::size_t p = 0; p < 5; ++p)
-      for (std::size_t q = p + 1; q < 6; ++q) rotate(m, p, q);
+      for (std::size_t q = p + 1; q < 6; ++q) jacobi_rotation(m, p, q);
   Sym6 values;
   for (std::size_t a = 0; a < 6; ++a) values[a] = m[a][a];
   std::sort(values.begin(), values.end());

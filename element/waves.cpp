@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/jacobi.hpp"
 
 namespace grainlaw {
 
@@ -14,18 +15,9 @@ using Matrix = std::array<std::array<double, 3>, 3>;
 
 /// A rotation of m in the plane of axes p and q that makes m(p, q) vanish; `axes` holds them in its columns.
 void rotate(Matrix& m, Matrix& axes, std::size_t p, std::size_t q) {
-  if (m[p][q] == 0) return;
-  const double ratio = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-  const double t = std::copysign(1 / (std::abs(ratio) + std::sqrt(1 + ratio * ratio)), ratio);
-  const double c = 1 / std::sqrt(1 + t * t), s = t * c;
-  const auto turn = [&](double& a, double& b) {
-    const double first = c * a - s * b;
-    b = s * a + c * b;
-    a = first;
-  };
-  for (std::size_t k = 0; k < 3; ++k) turn(m[k][p], m[k][q]);
-  for (std::size_t k = 0; k < 3; ++k) turn(m[p][k], m[q][k]);
-  for (std::size_t k = 0; k < 3; ++k) turn(axes[k][p], axes[k][q]);
+  jacobi_rotation(m, p, q, [&](const auto& turn) {
+    for (auto& row : axes) turn(row[p], row[q]);
+  });
 }
 
 Direction unit(const Direction& n) {
