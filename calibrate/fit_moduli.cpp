@@ -47,22 +47,6 @@ struct DecreaseLaw {  // g_I
   }
 };
 
-FitParameter parameter(const KnownValues& known, const std::string& name, double initial, double low,
-                       double high, double scale, int hold_order = 0) {
-  FitParameter p;
-  p.name = name;
-  p.initial = initial;
-  p.low = low;
-  p.high = high;
-  p.scale = scale;
-  if (const auto found = known.find(name); found != known.end()) {
-    p.fallback = found->second.value;
-    p.fallback_error = found->second.error;
-  }
-  p.hold_order = hold_order;
-  return p;
-}
-
 template <class Take>
 std::vector<FitSeries> points_of(const std::vector<ModuliSeries>& series, Take take) {
   std::vector<FitSeries> out;
@@ -113,20 +97,20 @@ FitProblem bulk_modulus_problem(const std::vector<ModuliSeries>& series, const m
     std::erase_if(s.points, [&](const FitPoint& p) { return p.known <= contacts.nu_c; });
   problem.x_resolution = F_v_resolution;
   problem.starts = starts;
-  FitParameter jamming = parameter({}, "nu_c", nu_c.value, 0, 1, 0.02, 2);
+  FitParameter jamming = known_parameter({}, "nu_c", nu_c.value, 0, 1, 0.02, 2);
   jamming.held = true;
   jamming.held_error = nu_c.error;
-  problem.parameters = {parameter(known, "p0", 0.042, 1e-3, 0.5, 0.04, 1),
-                        parameter(known, "gamma_p", 0.2, -5, 5, 1, 0), jamming};
+  problem.parameters = {known_parameter(known, "p0", 0.042, 1e-3, 0.5, 0.04, 1),
+                        known_parameter(known, "gamma_p", 0.2, -5, 5, 1, 0), jamming};
   return problem;
 }
 
 FitProblem first_anisotropy_problem(const std::vector<ModuliSeries>& series, const KnownValues& known) {
-  return anisotropy_problem(series, &ModuliState::A1, parameter(known, "a_I", 0.7, -10, 10, 0.7));
+  return anisotropy_problem(series, &ModuliState::A1, known_parameter(known, "a_I", 0.7, -10, 10, 0.7));
 }
 
 FitProblem second_anisotropy_problem(const std::vector<ModuliSeries>& series, const KnownValues& known) {
-  return anisotropy_problem(series, &ModuliState::A2, parameter(known, "a_II", 1, -10, 10, 1));
+  return anisotropy_problem(series, &ModuliState::A2, known_parameter(known, "a_II", 1, -10, 10, 1));
 }
 
 FitProblem initial_ratio_problem(const std::vector<ModuliSeries>& series, const KnownValues& known) {
@@ -137,9 +121,9 @@ FitProblem initial_ratio_problem(const std::vector<ModuliSeries>& series, const 
   problem.points = Points::runs;
   problem.x_resolution = F_v_resolution;
   problem.starts = 2 * starts;
-  problem.parameters = {parameter(known, "GB_max", 0.5, 0.05, 3, 0.5, 2),
-                        parameter(known, "Fv_min", 4.2, 0, 8, 2, 1),
-                        parameter(known, "Fv_alpha", 2, 0.1, 50, 2, 0)};
+  problem.parameters = {known_parameter(known, "GB_max", 0.5, 0.05, 3, 0.5, 2),
+                        known_parameter(known, "Fv_min", 4.2, 0, 8, 2, 1),
+                        known_parameter(known, "Fv_alpha", 2, 0.1, 50, 2, 0)};
   return problem;
 }
 
@@ -155,7 +139,7 @@ FitProblem shear_modulus_problem(const std::vector<ModuliSeries>& series, const 
     problem.series.push_back(std::move(points));
   }
   problem.x_resolution = product_resolution;
-  problem.parameters = {parameter(known, "g_I", 100, -1e4, 1e4, 100)};
+  problem.parameters = {known_parameter(known, "g_I", 100, -1e4, 1e4, 100)};
   return problem;
 }
 

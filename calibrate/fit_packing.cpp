@@ -56,8 +56,17 @@ double lowest_nu(const std::vector<PackingSeries>& series) {
   return lowest;
 }
 
-FitParameter parameter(const KnownValues& known, const std::string& name, double initial, double low,
-                       double high, double scale, int hold_order) {
+/// The volume fraction at which a law begins, up to `high`, just below the lowest one of the data.
+FitParameter jamming(const KnownValues& known, const std::string& name, double lowest, double high) {
+  FitParameter p = known_parameter(known, name, lowest - 0.005, lowest - 0.15, high, 0.02, 1);
+  p.bounds_follow_data = true;
+  return p;
+}
+
+}  // namespace
+
+FitParameter known_parameter(const KnownValues& known, const std::string& name, double initial, double low,
+                             double high, double scale, int hold_order) {
   FitParameter p;
   p.name = name;
   p.initial = std::clamp(initial, low, high);
@@ -72,15 +81,6 @@ FitParameter parameter(const KnownValues& known, const std::string& name, double
   return p;
 }
 
-/// The volume fraction at which a law begins, up to `high`, just below the lowest one of the data.
-FitParameter jamming(const KnownValues& known, const std::string& name, double lowest, double high) {
-  FitParameter p = parameter(known, name, lowest - 0.005, lowest - 0.15, high, 0.02, 1);
-  p.bounds_follow_data = true;
-  return p;
-}
-
-}  // namespace
-
 FitProblem contacts_problem(const std::vector<PackingSeries>& series, Points points, const KnownValues& known,
                             bool free_C0) {
   const double lowest = lowest_nu(series);
@@ -92,10 +92,10 @@ FitProblem contacts_problem(const std::vector<PackingSeries>& series, Points poi
   problem.points = points;
   problem.x_resolution = nu_resolution;
   problem.starts = starts;
-  FitParameter C0 = parameter(known, "C0", 6, 3, 9, 1, 3);
+  FitParameter C0 = known_parameter(known, "C0", 6, 3, 9, 1, 3);
   C0.held = !free_C0;
-  problem.parameters = {C0, parameter(known, "C1", 8, 0.5, 40, 8, 2),
-                        parameter(known, "alpha", 0.6, 0.15, 2, 0.5, 0),
+  problem.parameters = {C0, known_parameter(known, "C1", 8, 0.5, 40, 8, 2),
+                        known_parameter(known, "alpha", 0.6, 0.15, 2, 0.5, 0),
                         jamming(known, "nu_c_contacts", lowest, lowest * (1 - 1e-10))};
   return problem;
 }
@@ -110,11 +110,11 @@ FitProblem rattlers_problem(const std::vector<PackingSeries>& series, Points poi
   problem.points = points;
   problem.x_resolution = nu_resolution;
   problem.starts = starts;
-  FitParameter nu_c = parameter({}, "nu_c_contacts", nu_c_contacts, 0, 1, 0.02, 2);
+  FitParameter nu_c = known_parameter({}, "nu_c_contacts", nu_c_contacts, 0, 1, 0.02, 2);
   nu_c.held = true;
   nu_c.held_error = nu_c_error;
-  problem.parameters = {parameter(known, "phi_c", 0.13, 1e-4, 0.99, 0.1, 1),
-                        parameter(known, "phi_v", 15, 0.1, 100, 15, 0), nu_c};
+  problem.parameters = {known_parameter(known, "phi_c", 0.13, 1e-4, 0.99, 0.1, 1),
+                        known_parameter(known, "phi_v", 15, 0.1, 100, 15, 0), nu_c};
   return problem;
 }
 
@@ -129,8 +129,8 @@ FitProblem pressure_problem(const std::vector<PackingSeries>& series, Points poi
   problem.points = points;
   problem.x_resolution = nu_resolution;
   problem.starts = starts;
-  problem.parameters = {parameter(known, "p0", 0.042, 1e-3, 0.5, 0.04, 2),
-                        parameter(known, "gamma_p", 0.05, -5, 5, 1, 0),
+  problem.parameters = {known_parameter(known, "p0", 0.042, 1e-3, 0.5, 0.04, 2),
+                        known_parameter(known, "gamma_p", 0.05, -5, 5, 1, 0),
                         jamming(known, "nu_c", lowest, lowest)};
   return problem;
 }

@@ -19,6 +19,11 @@ struct KnownValue {
 /// Values to hold a parameter at if the data cannot determine it, by name; empty where nobody knows any.
 using KnownValues = std::map<std::string, KnownValue>;
 
+/// A parameter of a fit that can be held at its known value, after those of a lower `hold_order`. `initial`
+/// is taken into the bounds.
+FitParameter known_parameter(const KnownValues& known, const std::string& name, double initial, double low,
+                             double high, double scale, int hold_order = 0);
+
 /// A measured state, all numbers over one volume fraction. Errors are standard errors, 0 where unknown.
 struct PackingState {
   double nu = 0;
