@@ -2,9 +2,10 @@
 // into plain numbers for one form of the law. Says by Error which row or group is missing.
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <string>
 
+#include "grainlaw/model/dual.hpp"
 #include "grainlaw/model/parameters.hpp"
 
 namespace grainlaw::model {
@@ -20,21 +21,37 @@ std::string name_of(Form form);
 Form form_of(const std::string& name);
 
 /// The laws of one form, as numbers.
-struct Laws {
-  PressureCurve pressure;  ///< closure.P; in the coupled form it only starts P*
-  ContactCurve contacts;   ///< closure.contacts, closure.contacts_nu_c
-  double g3 = 1;           ///< of F_v = g3 nu C: moduli.g3 where known, else Eq. 3.8 of material.w
-  Saturation s_max, F_max, beta_F;
-  Saturation beta_s;  ///< reduced forms only
-  Moduli moduli;      ///< coupled form only
+template <class P>
+struct BasicLaws {
+  BasicPressureCurve<P> pressure;  ///< closure.P; in the coupled form it only starts P*
+  BasicContactCurve<P> contacts;   ///< closure.contacts, closure.contacts_nu_c
+  P g3 = 1;                        ///< of F_v = g3 nu C: moduli.g3 where known, else Eq. 3.8 of material.w
+  BasicSaturation<P> s_max, F_max, beta_F;
+  BasicSaturation<P> beta_s;  ///< reduced forms only
+  BasicModuli<P> moduli;      ///< coupled form only
 };
+using Laws = BasicLaws<double>;
+
+/// A parameter as a number of type P: for a Dual, with the slope it carries.
+template <class P>
+using Reading = std::function<P(const Parameter&)>;
 
 /// Resolves the closure. Throws Error naming the parameter file and the row or group that the form needs and
-/// the set lacks.
+/// the set lacks. Instantiated for double and Slopes.
+template <class P>
+BasicLaws<P> laws_of(const ParameterSet& parameters, Form form, const Reading<P>& read);
 Laws laws_of(const ParameterSet& parameters, Form form);
 
 /// The same laws for another history: phi_J in place of the nu_c of the pressure law, and every other nu_c in
 /// proportion (chapter 5: Eqs. 5.7 to 5.9, 5.12).
-Laws with_jamming_density(Laws laws, double phi_J);
+template <class P>
+BasicLaws<P> with_jamming_density(BasicLaws<P> laws, const P& phi_J) {
+  const P factor = phi_J / laws.pressure.nu_c;
+  laws.pressure = with_jamming_density(laws.pressure, phi_J);
+  for (P* nu_c : {&laws.contacts.nu_c, &laws.moduli.nu_c, &laws.s_max.nu_c, &laws.beta_s.nu_c,
+                  &laws.F_max.nu_c, &laws.beta_F.nu_c})
+    *nu_c = *nu_c * factor;
+  return laws;
+}
 
 }  // namespace grainlaw::model

@@ -10,26 +10,32 @@
 namespace grainlaw::model {
 
 /// Numbers of Eqs. 5.1 and 5.5.
-struct OverCompression {
-  double phi_SJ = 0.5;     ///< shear-jamming density, the lowest phi_J
-  double mu = 1;           ///< number of cycles the memory takes to fill
-  double beta = 1;         ///< stretching of that exponential
-  double alpha_max = 0;    ///< strength of over-compression
-  double alpha_phi = 0.3;  ///< its exponent
+template <class P>
+struct BasicOverCompression {
+  P phi_SJ = 0.5;     ///< shear-jamming density, the lowest phi_J
+  P mu = 1;           ///< number of cycles the memory takes to fill
+  P beta = 1;         ///< stretching of that exponential
+  P alpha_max = 0;    ///< strength of over-compression
+  P alpha_phi = 0.3;  ///< its exponent
 };
+using OverCompression = BasicOverCompression<double>;
 
 /// Eq. 5.5: phi_J after infinitely many compressions to phi_max,
 /// phi_SJ + alpha_max (phi_max/phi_SJ - 1)^alpha_phi; phi_SJ where phi_max <= phi_SJ.
-inline double jamming_density_limit(const OverCompression& o, double phi_max) {
+template <class P, class T>
+Meet<P, T> jamming_density_limit(const BasicOverCompression<P>& o, const T& phi_max) {
+  using std::pow;
   if (phi_max <= o.phi_SJ) return o.phi_SJ;
-  return o.phi_SJ + o.alpha_max * std::pow(phi_max / o.phi_SJ - 1, o.alpha_phi);
+  return o.phi_SJ + o.alpha_max * pow(phi_max / o.phi_SJ - 1, o.alpha_phi);
 }
 
 /// Eq. 5.1: phi_J after M compressions to phi_max,
 /// phi_inf - (phi_inf - phi_SJ) exp[-(M/mu)^beta]. M = 0 is phi_SJ, M = 1 the first compression.
-inline double jamming_density_after(const OverCompression& o, double phi_max, double M) {
-  const double limit = jamming_density_limit(o, phi_max);
-  return o.phi_SJ - (limit - o.phi_SJ) * std::expm1(-std::pow(M / o.mu, o.beta));
+template <class P, class T, class N>
+Meet<P, T> jamming_density_after(const BasicOverCompression<P>& o, const T& phi_max, const N& M) {
+  using std::expm1, std::pow;
+  const auto limit = jamming_density_limit(o, phi_max);
+  return o.phi_SJ - (limit - o.phi_SJ) * expm1(-pow(M / o.mu, o.beta));
 }
 
 /// Where `holds` turns from true to false between low and high.

@@ -10,44 +10,58 @@
 namespace grainlaw::model {
 
 /// Numbers of Eqs. 4.11 to 4.15 (Table 4.1).
-struct Moduli {
-  double p0 = 0;        ///< prefactor of B; Table 4.2's b times p0 in one number
-  double gamma_p = 0;   ///< non-linearity of B
-  double nu_c = 0.5;    ///< volume fraction the strain of B counts from
-  double g3 = 1;        ///< size distribution factor of F_v
-  double a_I = 0;       ///< A1/(B F_dev)
-  double a_II = 0;      ///< A2/(B F_dev)
-  double g_I = 0;       ///< decrease of G/B with sigma*_dev F_dev
-  double GB_max = 0;    ///< (G/B)_ini at large F_v
-  double Fv_min = 0;    ///< F_v where (G/B)_ini begins
-  double Fv_alpha = 1;  ///< its growth in F_v, > 0
+template <class P>
+struct BasicModuli {
+  P p0 = 0;        ///< prefactor of B; Table 4.2's b times p0 in one number
+  P gamma_p = 0;   ///< non-linearity of B
+  P nu_c = 0.5;    ///< volume fraction the strain of B counts from
+  P g3 = 1;        ///< size distribution factor of F_v
+  P a_I = 0;       ///< A1/(B F_dev)
+  P a_II = 0;      ///< A2/(B F_dev)
+  P g_I = 0;       ///< decrease of G/B with sigma*_dev F_dev
+  P GB_max = 0;    ///< (G/B)_ini at large F_v
+  P Fv_min = 0;    ///< F_v where (G/B)_ini begins
+  P Fv_alpha = 1;  ///< its growth in F_v, > 0
 };
+using Moduli = BasicModuli<double>;
 
 /// Eq. 4.11: B = p0 F_v/(g3 nu_c) [1 - 2 gamma_p e + e (1 - gamma_p e) d ln F_v/de], e = ln(nu/nu_c), with
 /// F_v(nu) from `contacts`. Finite at nu_c; 0 where nu < contacts.nu_c.
-inline double bulk_modulus(const Moduli& m, const ContactCurve& contacts, double nu) {
+template <class P, class T>
+Meet<P, T> bulk_modulus(const BasicModuli<P>& m, const BasicContactCurve<P>& contacts, const T& nu) {
+  using std::log;
   if (nu < contacts.nu_c) return 0.0;
-  const double e = std::log(nu / m.nu_c);
-  const double F_v = isotropic_fabric(contacts, m.g3, nu);
+  const auto e = log(nu / m.nu_c);
+  const auto F_v = isotropic_fabric(contacts, m.g3, nu);
   return m.p0 * F_v / (m.g3 * m.nu_c) *
          (1 - 2 * m.gamma_p * e + (1 - m.gamma_p * e) * strain_times_fabric_slope(contacts, nu, e));
 }
 
 /// Eq. 4.12: A1 = a_I B F_dev. Its derivative with respect to F_dev is a_I B.
-inline double anisotropy_modulus_1(const Moduli& m, double B, double F_dev) { return m.a_I * B * F_dev; }
+template <class P, class C, class T>
+auto anisotropy_modulus_1(const BasicModuli<P>& m, const C& B, const T& F_dev) {
+  return m.a_I * B * F_dev;
+}
 
 /// Eq. 4.13: A2 = a_II B F_dev. Its derivative with respect to F_dev is a_II B.
-inline double anisotropy_modulus_2(const Moduli& m, double B, double F_dev) { return m.a_II * B * F_dev; }
+template <class P, class C, class T>
+auto anisotropy_modulus_2(const BasicModuli<P>& m, const C& B, const T& F_dev) {
+  return m.a_II * B * F_dev;
+}
 
 /// Eq. 4.14: (G/B)_ini = GB_max {1 - exp[-(F_v - Fv_min)/Fv_alpha]}. The thesis prints the exponent without
 /// its minus.
-inline double initial_shear_ratio(const Moduli& m, double F_v) {
-  return -m.GB_max * std::expm1(-(F_v - m.Fv_min) / m.Fv_alpha);
+template <class P, class T>
+auto initial_shear_ratio(const BasicModuli<P>& m, const T& F_v) {
+  using std::expm1;
+  return -m.GB_max * expm1(-(F_v - m.Fv_min) / m.Fv_alpha);
 }
 
 /// Eq. 4.15: G = B [(G/B)_ini - g_I sigma*_dev F_dev]. Derivatives: -B g_I F_dev with respect to sigma*_dev,
 /// -B g_I sigma*_dev with respect to F_dev.
-inline double shear_modulus(const Moduli& m, double B, double ratio_ini, double sigma_dev, double F_dev) {
+template <class P, class C, class S, class F>
+auto shear_modulus(const BasicModuli<P>& m, const C& B, const C& ratio_ini, const S& sigma_dev,
+                   const F& F_dev) {
   return B * (ratio_ini - m.g_I * sigma_dev * F_dev);
 }
 

@@ -12,6 +12,7 @@
 #include "grainlaw/model/integrator.hpp"
 #include "grainlaw/model/law.hpp"
 #include "grainlaw/model/status.hpp"
+#include "grainlaw/model/walk.hpp"
 
 namespace grainlaw::model {
 
@@ -35,19 +36,9 @@ class MaterialPoint {
   /// A rest: the next shear begins a new direction (S_I and S_F,I are taken anew).
   void relax() { state_.direction.q = 0; }
 
-  /// Where the point lost its contacts (jammed = false) or found them again.
-  struct Event {
-    bool jammed;
-    double nu, eps_vol, eps_dev;
-  };
   const std::vector<Event>& events() const { return events_; }
 
  private:
-  struct Walk;  // the stretch, how far it is done, and the samples still to be visited
-  void walk_unjammed(Walk& walk);
-  Status walk_jammed(Walk& walk);
-  void note(bool jammed);
-
   Law law_;
   State state_;
   std::optional<Integrator> integrator_;  // none where there is nothing to integrate

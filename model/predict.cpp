@@ -80,7 +80,7 @@ std::string where(double nu, double eps_dev) {
   return "at nu = " + shown(nu) + ", eps_dev = " + shown(eps_dev);
 }
 
-void tell_events(const std::vector<MaterialPoint::Event>& events, std::vector<std::string>& warnings) {
+void tell_events(const std::vector<Event>& events, std::vector<std::string>& warnings) {
   for (std::size_t i = 0; i < std::min(events.size(), most_events); ++i)
     warnings.push_back((events[i].jammed ? "jams " : "unjams: loses its pressure ") +
                        where(events[i].nu, events[i].eps_dev));

@@ -30,9 +30,7 @@ class Filling {
 
  private:
   bool coupled() const { return form_of(result_.law) == Form::coupled; }
-  Laws& laws() {
-    return std::visit([](auto& form) -> Laws& { return form.laws; }, result_.law);
-  }
+  Laws& laws() { return laws_of(result_.law); }
   std::string pressure_law() const {
     return "the pressure law isotropic." + parameters_.closure.P + " (Eq. 2.14)" +
            (parameters_.file.empty() ? "" : " of " + parameters_.file);

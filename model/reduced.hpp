@@ -1,0 +1,110 @@
+// The reduced forms: pressure from the packing law (Eq. 2.14), stress ratio and fabric from their approach to
+// saturation, solved at the current volume fraction (Eqs. 2.17, 2.18) or by rate.
+#pragma once
+
+#include <array>
+
+#include "grainlaw/model/closure.hpp"
+#include "grainlaw/model/form.hpp"
+#include "grainlaw/model/state.hpp"
+
+namespace grainlaw::model {
+
+/// What both have in common.
+template <class P>
+struct BasicReducedPoint {
+  BasicLaws<P> laws;
+
+  /// A jammed state at t of a stretch.
+  template <class T>
+  BasicState<T> state_with(const BasicState<T>& begin, const BasicStretch<T>& stretch, const T& t,
+                           const T& s_dev, const T& F_dev) const {
+    BasicState<T> state = begin.moved(stretch, t);
+    state.P = pressure(laws.pressure, state.nu);
+    state.sigma_dev = s_dev * state.P;
+    state.F_dev = F_dev;
+    return state;
+  }
+  /// The volume fraction at and below which there is no pressure.
+  P unjamming_density() const { return model::jamming_density(laws.pressure); }
+  template <class T>
+  void unjam(BasicState<T>& state) const {
+    state.P = state.sigma_dev = state.F_dev = 0.0;
+    state.jammed = false;
+    state.direction = {};
+  }
+  /// At the density itself P* is 0 and s_dev has no value; the next number above it will do.
+  template <class T>
+  Meet<P, T> jamming_density(const BasicState<T>&) const {
+    return unjamming_density() * (1 + 1e-12);
+  }
+  /// Isotropic before, at the start of a direction now.
+  template <class T>
+  void jam(BasicState<T>& state, const BasicStretch<T>& stretch) const {
+    state.jammed = true;
+    state.P = pressure(laws.pressure, state.nu);
+    state.sigma_dev = state.F_dev = 0.0;
+    state.direction = {.q = stretch.q(), .eps_dev_0 = state.eps_dev};
+  }
+  template <class T>
+  void begin_direction(BasicState<T>& state, const Sign<T>& q) const {
+    begin_direction_of(laws, state, q);
+  }
+};
+
+/// Eqs. 2.17, 2.18 evaluated at the current volume fraction; nothing to integrate.
+template <class P>
+struct BasicReducedClosed : BasicReducedPoint<P> {
+  static constexpr Form form = Form::reduced_closed;
+  static constexpr std::size_t size = 0;
+  using BasicReducedPoint<P>::laws;
+
+  template <class T>
+  BasicState<T> at(const BasicState<T>& begin, const BasicStretch<T>& stretch, const T& t) const {
+    using std::abs;
+    // Without shear nothing approaches anything: s_dev and F_dev stay.
+    if (stretch.eps_dev == 0) return this->state_with(begin, stretch, t, begin.s_dev(), begin.F_dev);
+    const auto& d = begin.direction;
+    const T nu = stretch.nu(t), e = abs(begin.eps_dev + stretch.eps_dev * t - d.eps_dev_0);
+    const T s = approach(d.q * saturation(laws.s_max, nu), d.s_0, saturation(laws.beta_s, nu), e);
+    const T F = approach(d.q * saturation(laws.F_max, nu), d.F_0, saturation(laws.beta_F, nu), e);
+    return this->state_with(begin, stretch, t, s, F);
+  }
+};
+using ReducedClosed = BasicReducedClosed<double>;
+
+/// ds = beta_s (q s_max - s)|d eps_dev|, dF = beta_F (q F_max - F)|d eps_dev|, P* = Eq. 2.14; variables
+/// s_dev, F_dev.
+template <class P>
+struct BasicReduced : BasicReducedPoint<P> {
+  static constexpr Form form = Form::reduced;
+  static constexpr std::size_t size = 2;
+  using BasicReducedPoint<P>::laws;
+
+  template <class T>
+  std::array<T, size> variables(const BasicState<T>& begin) const {
+    return {begin.s_dev(), begin.F_dev};
+  }
+  template <class S, class Y>
+  bool rate(const BasicStretch<S>& stretch, const BasicDirection<S>&, const S& t, const Y* y, Y* dydt) const {
+    using std::abs;
+    const auto nu = stretch.nu(t);
+    const auto q = stretch.q();
+    const auto e = abs(stretch.eps_dev);
+    dydt[0] = e * approach_rate(q * saturation(laws.s_max, nu), y[0], saturation(laws.beta_s, nu));
+    dydt[1] = e * approach_rate(q * saturation(laws.F_max, nu), y[1], saturation(laws.beta_F, nu));
+    return true;
+  }
+  bool jacobian(const Stretch& stretch, const Direction& direction, double t, const double* y,
+                double* J) const {
+    return jacobian_of(*this, stretch, direction, t, y, J);
+  }
+  template <class T>
+  BasicState<T> state(const BasicState<T>& begin, const BasicStretch<T>& stretch, const T& t,
+                      const T* y) const {
+    return this->state_with(begin, stretch, t, y[0], y[1]);
+  }
+};
+using Reduced = BasicReduced<double>;
+
+}  // namespace grainlaw::model

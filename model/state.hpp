@@ -1,0 +1,93 @@
+// A material point: its state, what a direction of shear remembers of its start, and the stretch of strain it
+// is walked along (rate independent: the path variable t runs from 0 to 1). Templates over the scalar.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "grainlaw/model/dual.hpp"
+
+namespace grainlaw::model {
+
+/// -1, 0 or 1.
+inline double sign(double x) { return static_cast<double>((x > 0) - (x < 0)); }
+template <std::size_t N>
+double sign(const Dual<N>& x) {
+  return sign(x.value);
+}
+/// The type of a sign of T.
+template <class T>
+using Sign = decltype(sign(std::declval<T>()));
+
+/// A straight stretch of logarithmic strain, compression positive; t in [0, 1].
+template <class T>
+struct BasicStretch {
+  T nu_0 = 0.5;   ///< volume fraction at t = 0
+  T eps_vol = 0;  ///< change of ln nu: the full volume strain, 3 d eps_v of the thesis
+  T eps_dev = 0;  ///< signed deviatoric strain
+
+  T nu(const T& t) const {
+    using std::exp;
+    return nu_0 * exp(eps_vol * t);
+  }
+  BasicStretch rest(const T& t) const { return {nu(t), eps_vol * (1 - t), eps_dev * (1 - t)}; }
+  /// q = sgn(d eps_dev): -1, 0 or 1.
+  Sign<T> q() const { return sign(eps_dev); }
+};
+using Stretch = BasicStretch<double>;
+
+/// What a direction of shear remembers of its start. A direction begins at the start of a path, at a
+/// reversal, after a relaxation, and with the first shear after a purely isotropic stretch.
+template <class T>
+struct BasicDirection {
+  Sign<T> q = 0;    ///< +1 or -1; 0: the next shear begins a new one
+  T S_I = 1;        ///< |S| at its start, S = 1 - q s/s_max (Eq. 4.16), at least 1e-6
+  T S_F_I = 1;      ///< the same of 1 - q F_dev/F_max
+  T s_0 = 0;        ///< s_dev at its start (Eq. 2.17)
+  T F_0 = 0;        ///< F_dev at its start (Eq. 2.18)
+  T eps_dev_0 = 0;  ///< eps_dev at its start
+};
+using Direction = BasicDirection<double>;
+
+/// A material point. Stresses over k*, compression positive; deviatoric values signed.
+template <class T>
+struct BasicState {
+  T nu = 0.5;
+  T eps_vol = 0;  ///< ln(nu/nu_start)
+  T eps_dev = 0;
+  T P = 0;
+  T sigma_dev = 0;
+  T F_dev = 0;
+  T phi_J = 0;          ///< jamming density: at and below it the point is unjammed
+  bool jammed = false;  ///< unjammed: P = sigma_dev = F_dev = 0, no contacts
+  BasicDirection<T> direction;
+
+  /// sigma_dev/P; NaN where unjammed.
+  T s_dev() const {
+    if (!jammed) return std::numeric_limits<double>::quiet_NaN();
+    return sigma_dev / P;
+  }
+  /// The state at t of a stretch from here, with stress and fabric as they are.
+  BasicState moved(const BasicStretch<T>& stretch, const T& t) const {
+    BasicState state = *this;
+    state.nu = stretch.nu(t);
+    state.eps_vol += stretch.eps_vol * t;
+    state.eps_dev += stretch.eps_dev * t;
+    return state;
+  }
+};
+using State = BasicState<double>;
+
+/// |1 - q x/x_sat|, the scale of S and S_F in a direction. At saturation there is no elastic part: plastic
+/// from the start. The floor keeps that limit finite; an elastic part this short (in strain, it over beta) is
+/// none.
+template <class T>
+T distance_scale(const Sign<T>& q, const T& x, const T& x_sat) {
+  using std::abs;
+  constexpr double floor = 1e-6;
+  const T scale = abs(1 - q * x / x_sat);
+  if (scale < floor) return floor;
+  return scale;
+}
+
+}  // namespace grainlaw::model

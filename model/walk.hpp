@@ -1,0 +1,154 @@
+// Walking a state along a stretch of strain, through loss of contact and back: the stretch is cut where the
+// point unjams or jams, and each jammed piece is handed to a solver. Templates over the form of the law and
+// the scalar.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "grainlaw/model/state.hpp"
+#include "grainlaw/model/status.hpp"
+
+namespace grainlaw::model {
+
+/// Where a point lost its contacts (jammed = false) or found them again.
+struct Event {
+  bool jammed;
+  double nu, eps_vol, eps_dev;
+};
+
+/// How a solver came along a stretch.
+template <class T>
+struct Reached {
+  Status status;
+  T t = 1;                     ///< where the state belongs: the end, or where the pressure vanished
+  bool lost_pressure = false;  ///< the latter
+};
+
+/// A stretch that is walked in pieces, and the samples on it (fractions of the whole, ascending) still to be
+/// visited.
+template <class T>
+class Course {
+ public:
+  Course(const BasicStretch<T>& whole, std::span<const double> samples) : whole_(whole), samples_(samples) {}
+
+  bool done() const { return t_ >= 1 && next_ == samples_.size(); }
+  const T& t() const { return t_; }
+  const BasicStretch<T>& whole() const { return whole_; }
+  /// From where the course stands to the fraction `to` of the whole.
+  BasicStretch<T> piece(const T& to) const {
+    return {whole_.nu(t_), whole_.eps_vol * (to - t_), whole_.eps_dev * (to - t_)};
+  }
+  /// Fraction of the whole at which its volume fraction is nu, not before where the course stands; its
+  /// eps_vol is not 0.
+  T at(const T& nu) const {
+    using std::log;
+    const T t = log(nu / whole_.nu_0) / whole_.eps_vol;
+    if (t < t_) return t_;
+    return t;
+  }
+  /// The next sample as a fraction of piece(to); beyond 1 if none is left on it.
+  T next_sample(const T& to) const {
+    if (next_ == samples_.size() || samples_[next_] > to) return 2.0;
+    if (!(samples_[next_] > t_)) return 0.0;
+    return (samples_[next_] - t_) / (to - t_);
+  }
+  std::size_t pass_sample() { return next_++; }
+  /// Goes on by the fraction `f` of piece(to).
+  void advance(const T& f, const T& to) {
+    if (f < 1)
+      t_ = t_ + f * (to - t_);
+    else
+      t_ = to;
+  }
+
+ private:
+  BasicStretch<T> whole_;
+  std::span<const double> samples_;
+  std::size_t next_ = 0;
+  T t_ = 0;
+};
+
+/// One walk: the course, who is told of samples (`visit(index, state)`) and of events (`note(jammed,
+/// state)`), and who integrates: `solve(form, state, stretch, next_sample, visit)` carries the state over a
+/// stretch of strain, visiting the fractions that next_sample() gives until that is beyond 1, and returns a
+/// Reached<T>.
+template <class F, class T, class Solve, class Visit, class Note>
+class Walk {
+ public:
+  Walk(const F& form, BasicState<T>& state, Course<T> course, Solve solve, Visit visit, Note note)
+      : form_(form), state_(state), course_(course), solve_(solve), visit_(visit), note_(note) {}
+
+  /// On failure the state is somewhere on the way.
+  Status run() {
+    const auto q = course_.whole().q();
+    if (state_.jammed && q != 0 && q != state_.direction.q) form_.begin_direction(state_, q);
+    for (int phase = 0; !course_.done(); ++phase) {
+      if (phase == most_phases) return {Status::Code::failed, "contact is lost and found again without end"};
+      if (!state_.jammed) {
+        walk_unjammed();
+      } else if (Status status = walk_jammed(); status.failed()) {
+        return status;
+      }
+    }
+    if (q == 0) state_.direction.q = 0;  // shear after an isotropic stretch begins a new direction
+    return {};
+  }
+
+ private:
+  /// A stretch along which contact is lost and found again more often than this is given up.
+  static constexpr int most_phases = 1000;
+
+  void visit(const BasicState<T>& state) { visit_(course_.pass_sample(), state); }
+
+  void walk_unjammed() {
+    T end = 1.0;
+    bool jams = false;
+    if (course_.whole().eps_vol > 0) {
+      const T t = course_.at(form_.jamming_density(state_));
+      jams = t < 1;
+      if (jams) end = t;
+    }
+    const auto stretch = course_.piece(end);
+    for (T t = course_.next_sample(end); jams ? t < 1 : t <= 1; t = course_.next_sample(end))
+      visit(state_.moved(stretch, t));
+    state_ = state_.moved(stretch, 1.0);
+    course_.advance(1.0, end);
+    if (!jams) return;
+    form_.jam(state_, course_.whole());
+    note_(true, state_);
+  }
+
+  Status walk_jammed() {
+    T end = 1.0;
+    bool leaves = false;
+    if (course_.whole().eps_vol < 0) {
+      const T t = course_.at(form_.unjamming_density());
+      leaves = t <= 1;
+      if (leaves) end = t;
+    }
+    // Where the contacts are lost at `end`, the state there belongs to the unjammed phase that follows.
+    const auto next_sample = [&]() -> T {
+      const T t = course_.next_sample(end);
+      if (leaves && t >= 1) return 2.0;
+      return t;
+    };
+    const Reached<T> reached = solve_(form_, state_, course_.piece(end), next_sample,
+                                      [&](const BasicState<T>& state) { visit(state); });
+    course_.advance(reached.t, end);
+    if (reached.status.failed()) return reached.status;
+    if (!leaves && !reached.lost_pressure) return {};
+    form_.unjam(state_);
+    note_(false, state_);
+    return {};
+  }
+
+  const F& form_;
+  BasicState<T>& state_;
+  Course<T> course_;
+  Solve solve_;
+  Visit visit_;
+  Note note_;
+};
+
+}  // namespace grainlaw::model
