@@ -7,7 +7,9 @@
 // return to s_max from beyond it, where the quotient of the thesis would run away.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "grainlaw/model/closure.hpp"
 #include "grainlaw/model/form.hpp"
@@ -47,7 +49,8 @@ struct BasicCoupled {
     return {begin.P, begin.sigma_dev, begin.F_dev};
   }
 
-  /// dy/dt along a stretch where the coefficients are `c`. False where it is not defined: P* <= 0.
+  /// dy/dt along a stretch where the coefficients are `c`. False where it is not defined: P* <= 0, or
+  /// saturation values that are not > 0.
   template <class C, class S, class Y>
   bool rate(const Coefficients<C>& c, const BasicStretch<S>& stretch, const BasicDirection<S>& direction,
             const Y* y, Y* dydt) const {
@@ -58,8 +61,9 @@ struct BasicCoupled {
     dydt[0] = c.B * v;
     dydt[1] = A2 * v;
     dydt[2] = 0.0;
-    if (e == 0) return true;
-    if (!(pressure > 0)) return false;  // s = sigma/P; the event at smallest_pressure comes first
+    if (vanishes(e)) return true;
+    // s = sigma/P; the event at smallest_pressure comes first.
+    if (!(pressure > 0 && c.s_max > 0 && c.F_max > 0 && c.beta_F >= 0)) return false;
     const auto q = stretch.q();
     const auto G = shear_modulus(laws.moduli, c.B, c.ratio_ini, sigma, F);
     const auto S_e = (1 - q * sigma / (pressure * c.s_max)) * (e / direction.S_I);
@@ -68,16 +72,28 @@ struct BasicCoupled {
     dydt[2] = approach_rate(q * c.F_max, F, c.beta_F * (abs(e) / direction.S_F_I));
     return true;
   }
-  template <class S, class Y>
-  bool rate(const BasicStretch<S>& stretch, const BasicDirection<S>& direction, const S& t, const Y* y,
-            Y* dydt) const {
-    return rate(coefficients(stretch.nu(t)), stretch, direction, y, dydt);
+  /// The fastest rate at which s_dev or F_dev approach saturation, per unit t.
+  template <class C, class S>
+  double relaxation(const Coefficients<C>& c, const BasicStretch<S>& stretch,
+                    const BasicDirection<S>& direction, const S* y) const {
+    const double e = std::abs(value(stretch.eps_dev));
+    if (e == 0) return 0;
+    const auto G = shear_modulus(laws.moduli, c.B, c.ratio_ini, y[1], y[2]);
+    return e * std::max(std::abs(value(G)) / (value(y[0]) * value(c.s_max) * value(direction.S_I)),
+                        value(c.beta_F) / value(direction.S_F_I));
+  }
+  /// What errors of the variables are relative to: P*, and what saturation allows of the others.
+  template <class C, class S>
+  std::array<double, size> scales(const Coefficients<C>& c, const S* y) const {
+    const double pressure = std::abs(value(y[0]));
+    return {pressure, std::max(value(c.s_max) * pressure, std::abs(value(y[1]))),
+            std::max(value(c.F_max), std::abs(value(y[2])))};
   }
 
-  /// J[i + size j] = d rate_i/d y_j.
-  bool jacobian(const BasicStretch<double>& stretch, const BasicDirection<double>& direction, double t,
-                const double* y, double* J) const {
-    return jacobian_of(*this, stretch, direction, t, y, J);
+  /// Reaches 0 where the pressure vanishes.
+  template <class Y>
+  static Y distance_to_event(const Y* y) {
+    return y[0] - smallest_pressure;
   }
 
   template <class T>

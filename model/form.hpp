@@ -1,4 +1,5 @@
-// What the forms of the law share: the Jacobian of their rates, and the start of a direction.
+// What the forms of the law share: rates at a point of a stretch, their Jacobian, and the start of a
+// direction.
 #pragma once
 
 #include <array>
@@ -9,6 +10,13 @@
 
 namespace grainlaw::model {
 
+/// dy/dt at t of a stretch. False where the rate is not defined.
+template <class F, class S, class X, class Y>
+bool rate_at(const F& form, const BasicStretch<S>& stretch, const BasicDirection<S>& direction, const X& t,
+             const Y* y, Y* dydt) {
+  return form.rate(form.coefficients(stretch.nu(t)), stretch, direction, y, dydt);
+}
+
 /// J[i + size j] = d rate_i/d y_j at t of a stretch, by dual numbers. False where the rate is not defined.
 template <class F>
 bool jacobian_of(const F& form, const Stretch& stretch, const Direction& direction, double t, const double* y,
@@ -16,7 +24,7 @@ bool jacobian_of(const F& form, const Stretch& stretch, const Direction& directi
   constexpr std::size_t n = F::size;
   std::array<Dual<n>, n> variables, rates;
   for (std::size_t j = 0; j < n; ++j) variables[j] = Dual<n>(y[j], j);
-  if (!form.rate(stretch, direction, t, variables.data(), rates.data())) return false;
+  if (!rate_at(form, stretch, direction, t, variables.data(), rates.data())) return false;
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i < n; ++i) J[i + n * j] = rates[i].slope[j];
   return true;

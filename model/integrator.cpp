@@ -131,11 +131,15 @@ Integrator::Handles::Handles(int size_, Tolerance tolerance)
   if (failed != 0) throw Error("the integrator cannot be set up: " + complaint);
 }
 
-Integrator::Integrator(int size, Tolerance tolerance) {
+void check(Tolerance tolerance) {
   if (!(tolerance.rtol > 0 && std::isfinite(tolerance.rtol)))
     throw Error("", "rtol", "must be > 0, got " + to_text(tolerance.rtol));
   if (!(tolerance.atol > 0 && std::isfinite(tolerance.atol)))  // a variable may be 0
     throw Error("", "atol", "must be > 0, got " + to_text(tolerance.atol));
+}
+
+Integrator::Integrator(int size, Tolerance tolerance) {
+  check(tolerance);
   handles_ = std::make_unique<Handles>(size, tolerance);
 }
 

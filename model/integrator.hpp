@@ -16,6 +16,8 @@ struct Tolerance {
   double rtol = 1e-8;
   double atol = 1e-12;
 };
+/// Throws Error for a tolerance that is not > 0 and finite.
+void check(Tolerance tolerance);
 
 /// dy/dt = rate(t, y). Functions return false where they are not defined; a smaller step is then tried. They
 /// must be smooth on the stretch that is integrated and stay so a little beyond an event.

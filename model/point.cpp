@@ -12,7 +12,7 @@ template <class Form>
 System system_of(const Form& form, const Stretch& stretch, const Direction& direction) {
   System system;
   system.rate = [&](double t, const double* y, double* dydt) {
-    return form.rate(stretch, direction, t, y, dydt);
+    return rate_at(form, stretch, direction, t, y, dydt);
   };
   system.jacobian = [&](double t, const double* y, double* J) {
     return jacobian_of(form, stretch, direction, t, y, J);
@@ -22,18 +22,7 @@ System system_of(const Form& form, const Stretch& stretch, const Direction& dire
   return system;
 }
 
-/// Solvers of a Walk: the closed form, and CVODE.
-struct Closed {
-  template <class NextSample, class Visit>
-  Reached<double> operator()(const ReducedClosed& form, State& state, const Stretch& stretch,
-                             NextSample next_sample, Visit visit) const {
-    const State begin = state;
-    for (double t = next_sample(); t <= 1; t = next_sample()) visit(form.at(begin, stretch, t));
-    state = form.at(begin, stretch, 1.0);
-    return {};
-  }
-};
-
+/// The solver of a Walk by CVODE.
 struct ByIntegrator {
   Integrator& integrator;
 

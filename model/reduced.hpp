@@ -2,11 +2,14 @@
 // saturation, solved at the current volume fraction (Eqs. 2.17, 2.18) or by rate.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "grainlaw/model/closure.hpp"
 #include "grainlaw/model/form.hpp"
 #include "grainlaw/model/state.hpp"
+#include "grainlaw/model/walk.hpp"
 
 namespace grainlaw::model {
 
@@ -73,6 +76,18 @@ struct BasicReducedClosed : BasicReducedPoint<P> {
 };
 using ReducedClosed = BasicReducedClosed<double>;
 
+/// The solver of a Walk in this form: nothing to integrate.
+struct Closed {
+  template <class P, class T, class NextSample, class Visit>
+  Reached<T> operator()(const BasicReducedClosed<P>& form, BasicState<T>& state,
+                        const BasicStretch<T>& stretch, NextSample next_sample, Visit visit) const {
+    const BasicState<T> begin = state;
+    for (T t = next_sample(); t <= 1; t = next_sample()) visit(form.at(begin, stretch, t));
+    state = form.at(begin, stretch, T(1.0));
+    return {};
+  }
+};
+
 /// ds = beta_s (q s_max - s)|d eps_dev|, dF = beta_F (q F_max - F)|d eps_dev|, P* = Eq. 2.14; variables
 /// s_dev, F_dev.
 template <class P>
@@ -85,19 +100,41 @@ struct BasicReduced : BasicReducedPoint<P> {
   std::array<T, size> variables(const BasicState<T>& begin) const {
     return {begin.s_dev(), begin.F_dev};
   }
-  template <class S, class Y>
-  bool rate(const BasicStretch<S>& stretch, const BasicDirection<S>&, const S& t, const Y* y, Y* dydt) const {
-    using std::abs;
-    const auto nu = stretch.nu(t);
+  /// Everything in the rates that depends on nu alone.
+  template <class T>
+  struct Coefficients {
+    T s_max, beta_s, F_max, beta_F;
+  };
+  template <class T>
+  Coefficients<Meet<P, T>> coefficients(const T& nu) const {
+    return {saturation(laws.s_max, nu), saturation(laws.beta_s, nu), saturation(laws.F_max, nu),
+            saturation(laws.beta_F, nu)};
+  }
+  /// dy/dt along a stretch where the coefficients are `c`.
+  template <class C, class S, class Y>
+  bool rate(const Coefficients<C>& c, const BasicStretch<S>& stretch, const BasicDirection<S>&, const Y* y,
+            Y* dydt) const {
     const auto q = stretch.q();
-    const auto e = abs(stretch.eps_dev);
-    dydt[0] = e * approach_rate(q * saturation(laws.s_max, nu), y[0], saturation(laws.beta_s, nu));
-    dydt[1] = e * approach_rate(q * saturation(laws.F_max, nu), y[1], saturation(laws.beta_F, nu));
+    const auto e = q * stretch.eps_dev;
+    dydt[0] = approach_rate(q * c.s_max, y[0], c.beta_s * e);
+    dydt[1] = approach_rate(q * c.F_max, y[1], c.beta_F * e);
     return true;
   }
-  bool jacobian(const Stretch& stretch, const Direction& direction, double t, const double* y,
-                double* J) const {
-    return jacobian_of(*this, stretch, direction, t, y, J);
+  /// The fastest rate of approach, per unit t.
+  template <class C, class S>
+  double relaxation(const Coefficients<C>& c, const BasicStretch<S>& stretch, const BasicDirection<S>&,
+                    const S*) const {
+    return std::abs(value(stretch.eps_dev)) * std::max(value(c.beta_s), value(c.beta_F));
+  }
+  /// What errors of the variables are relative to: what saturation allows.
+  template <class C, class S>
+  std::array<double, size> scales(const Coefficients<C>& c, const S* y) const {
+    return {std::max(value(c.s_max), std::abs(value(y[0]))), std::max(value(c.F_max), std::abs(value(y[1])))};
+  }
+  /// Pressure follows the volume: no event of its own.
+  template <class Y>
+  static double distance_to_event(const Y*) {
+    return 1;
   }
   template <class T>
   BasicState<T> state(const BasicState<T>& begin, const BasicStretch<T>& stretch, const T& t,

@@ -11,9 +11,9 @@ namespace grainlaw::model {
 
 /// -1, 0 or 1.
 inline double sign(double x) { return static_cast<double>((x > 0) - (x < 0)); }
-template <std::size_t N>
-double sign(const Dual<N>& x) {
-  return sign(x.value);
+template <std::size_t N, class T>
+double sign(const Dual<N, T>& x) {
+  return sign(value(x));
 }
 /// The type of a sign of T.
 template <class T>
@@ -26,7 +26,8 @@ struct BasicStretch {
   T eps_vol = 0;  ///< change of ln nu: the full volume strain, 3 d eps_v of the thesis
   T eps_dev = 0;  ///< signed deviatoric strain
 
-  T nu(const T& t) const {
+  template <class X>
+  auto nu(const X& t) const {
     using std::exp;
     return nu_0 * exp(eps_vol * t);
   }

@@ -82,6 +82,7 @@ class Walk {
   /// On failure the state is somewhere on the way.
   Status run() {
     const auto q = course_.whole().q();
+    if (q == 0) state_.direction = {};  // shear after an isotropic stretch begins a new direction
     if (state_.jammed && q != 0 && q != state_.direction.q) form_.begin_direction(state_, q);
     for (int phase = 0; !course_.done(); ++phase) {
       if (phase == most_phases) return {Status::Code::failed, "contact is lost and found again without end"};
@@ -91,7 +92,6 @@ class Walk {
         return status;
       }
     }
-    if (q == 0) state_.direction.q = 0;  // shear after an isotropic stretch begins a new direction
     return {};
   }
 

@@ -48,6 +48,17 @@ TEST(Dual, SlopesOfEveryOperation) {
   }
 }
 
+TEST(Dual, OfDualsGivesSecondDerivatives) {
+  // f = x^2 exp(x y) / y at (0.7, 1.3): f_xy by hand.
+  using DD = Dual<1, Dual<1>>;
+  const double x = 0.7, y = 1.3;
+  const DD a(Dual<1>(x), 0), b(Dual<1>(y, 0));
+  const DD f = a * a * exp(a * b) / b;
+  const double e = std::exp(x * y), f_x = (2 * x + x * x * y) * e / y;
+  EXPECT_NEAR(f.slope[0].value, f_x, 1e-15);
+  EXPECT_NEAR(f.slope[0].slope[0], f_x * (x - 1 / y) + x * x * e / y, 1e-14);
+}
+
 TEST(Dual, InfiniteSlopesOfPowersAtZeroMeetOnlyWhatMoves) {
   const D still = pow(D(0.0), D(0.5, 1));
   EXPECT_EQ(still.value, 0);

@@ -94,12 +94,12 @@ TEST(Reduced, Jacobian) {
   const Stretch stretch{0.7, 0.1, -0.3};
   std::array<double, 2> y{0.1, 0.05}, up{}, base{};
   std::array<double, 4> J{};
-  ASSERT_TRUE(law.jacobian(stretch, {}, 0.4, y.data(), J.data()));
-  ASSERT_TRUE(law.rate(stretch, {}, 0.4, y.data(), base.data()));
+  ASSERT_TRUE(jacobian_of(law, stretch, {}, 0.4, y.data(), J.data()));
+  ASSERT_TRUE(rate_at(law, stretch, {}, 0.4, y.data(), base.data()));
   for (std::size_t j = 0; j < 2; ++j) {  // linear: exact for any step
     auto moved = y;
     moved[j] += 0.125;
-    ASSERT_TRUE(law.rate(stretch, {}, 0.4, moved.data(), up.data()));
+    ASSERT_TRUE(rate_at(law, stretch, {}, 0.4, moved.data(), up.data()));
     for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(J[i + 2 * j], (up[i] - base[i]) / 0.125, 1e-12);
   }
 }

@@ -1,0 +1,120 @@
+#include "grainlaw/model/light_law.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::model {
+
+namespace {
+
+Status failure(const State& state, const Status& status) {
+  return {Status::Code::failed,
+          status.message + " (nu = " + shown(state.nu) + ", eps_dev = " + shown(state.eps_dev) + ")"};
+}
+
+/// The solver of one piece without samples.
+constexpr auto no_sample = [] { return 2.0; };
+constexpr auto no_visit = [](const auto&) {};
+
+template <class T>
+BasicState<T> with_slopes(const State& s) {
+  return {s.nu,
+          s.eps_vol,
+          s.eps_dev,
+          s.P,
+          s.sigma_dev,
+          s.F_dev,
+          s.phi_J,
+          s.jammed,
+          {s.direction.q, s.direction.S_I, s.direction.S_F_I, s.direction.s_0, s.direction.F_0,
+           s.direction.eps_dev_0}};
+}
+
+template <class T>
+State without_slopes(const BasicState<T>& s) {
+  return {value(s.nu),
+          value(s.eps_vol),
+          value(s.eps_dev),
+          value(s.P),
+          value(s.sigma_dev),
+          value(s.F_dev),
+          value(s.phi_J),
+          s.jammed,
+          {s.direction.q, value(s.direction.S_I), value(s.direction.S_F_I), value(s.direction.s_0),
+           value(s.direction.F_0), value(s.direction.eps_dev_0)}};
+}
+
+}  // namespace
+
+LightLaw::LightLaw(Law law, Tolerance tolerance, LightMethod method)
+    : law_(std::move(law)), light_{tolerance, method} {
+  check(tolerance);
+}
+
+/// The increment of a point that stays jammed in its direction: no walk, no copy. False where it is not one.
+bool LightLaw::quick(State& state, const Stretch& stretch, LightCache* cache) const {
+  const auto* form = std::get_if<Coupled>(&law_);
+  if (!form || !state.jammed || stretch.q() != state.direction.q || stretch.eps_dev == 0) return false;
+  if (stretch.eps_vol != 0 && !(stretch.nu(1.0) > form->unjamming_density())) return false;
+  LightCache own;
+  LightCache& known = cache ? *cache : own;
+  if (known.nu != state.nu) known = {state.nu, form->coefficients(state.nu)};
+  const State before = state;
+  const Reached<double> reached = light_.run(*form, state, stretch, known.coefficients, no_sample, no_visit);
+  if (!reached.status.failed() && !reached.lost_pressure) return true;
+  state = before;
+  return false;
+}
+
+template <class T>
+Status LightLaw::walk(BasicState<T>& state, const BasicStretch<T>& stretch) const {
+  return std::visit(
+      [&](const auto& form) {
+        return Walk(
+                   form, state, Course<T>(stretch, {}), light_, [](std::size_t, const BasicState<T>&) {},
+                   [](bool, const BasicState<T>&) {})
+            .run();
+      },
+      law_);
+}
+
+Status LightLaw::admits(const Stretch& stretch) const {
+  if (!std::isfinite(stretch.eps_vol) || !std::isfinite(stretch.eps_dev))
+    return {Status::Code::failed, "the strain increment must be finite, got eps_vol = " +
+                                      shown(stretch.eps_vol) + ", eps_dev = " + shown(stretch.eps_dev)};
+  if (auto reason = objection(law_, stretch)) return {Status::Code::failed, *reason};
+  return {};
+}
+
+Status LightLaw::update(State& state, double eps_vol, double eps_dev, LightCache* cache) const {
+  const Stretch stretch{state.nu, eps_vol, eps_dev};
+  if (quick(state, stretch, cache)) return {};
+  if (eps_vol == 0 && eps_dev == 0) return {};
+  if (Status status = admits(stretch); status.failed()) return status;
+  State moved = state;
+  if (Status status = walk(moved, stretch); status.failed()) return failure(state, status);
+  state = moved;
+  return {};
+}
+
+Status LightLaw::update(State& state, double eps_vol, double eps_dev, Tangent& tangent) const {
+  using T = Dual<2>;
+  if (Status status = admits({state.nu, eps_vol, eps_dev}); status.failed()) return status;
+  auto moved = with_slopes<T>(state);
+  const BasicStretch<T> stretch{state.nu, T(eps_vol, 0), T(eps_dev, 1)};
+  if (Status status = walk(moved, stretch); status.failed()) return failure(state, status);
+  // At rest the tangent is that of the next, elastic, increment; nothing is forgotten.
+  if (eps_vol == 0 && eps_dev == 0) moved.direction = with_slopes<T>(state).direction;
+  for (std::size_t i = 0; i < 2; ++i) {
+    tangent.P[i] = moved.P.slope[i];
+    tangent.sigma_dev[i] = moved.sigma_dev.slope[i];
+    tangent.F_dev[i] = moved.F_dev.slope[i];
+  }
+  state = without_slopes(moved);
+  return {};
+}
+
+}  // namespace grainlaw::model

@@ -1,0 +1,52 @@
+// The law for a host that comes with increments, one point at a time: state in, state out, and on request the
+// consistent tangent of the increment. Const and without allocation, so one object serves any number of
+// threads.
+#pragma once
+
+#include <optional>
+
+#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/light.hpp"
+
+namespace grainlaw::model {
+
+/// Derivatives of what an increment leaves by the increment itself: rows P*, sigma*_dev, F_dev; columns
+/// eps_vol, eps_dev. Exact to rounding for the steps that were taken, through loss of contact, jamming and
+/// reversals as well.
+struct Tangent {
+  double P[2] = {0, 0}, sigma_dev[2] = {0, 0}, F_dev[2] = {0, 0};
+};
+
+/// What the coupled form computed from nu last. Give the same one again and again to a point, or to a row of
+/// points of one volume fraction, and increments at constant volume cost a third.
+struct LightCache {
+  double nu = -1;
+  Coupled::Coefficients<double> coefficients{};
+};
+
+class LightLaw {
+ public:
+  /// Throws Error for a tolerance that is not > 0.
+  LightLaw(Law law, Tolerance tolerance, LightMethod method = LightMethod::automatic);
+
+  const Law& law() const { return law_; }
+  Tolerance tolerance() const { return light_.tolerance; }
+
+  /// Walks the state over an increment of logarithmic strain (compression positive; either may be 0), through
+  /// any loss of contact. On failure the state is as before and the status says why; a point that carries
+  /// nothing in the end is ok.
+  Status update(State& state, double eps_vol, double eps_dev, LightCache* cache = nullptr) const;
+  /// The same with the tangent.
+  Status update(State& state, double eps_vol, double eps_dev, Tangent& tangent) const;
+
+ private:
+  template <class T>
+  Status walk(BasicState<T>& state, const BasicStretch<T>& stretch) const;
+  bool quick(State& state, const Stretch& stretch, LightCache* cache) const;
+  Status admits(const Stretch& stretch) const;
+
+  Law law_;
+  Light light_;
+};
+
+}  // namespace grainlaw::model
