@@ -49,6 +49,13 @@ struct BasicCoupled {
     return {begin.P, begin.sigma_dev, begin.F_dev};
   }
 
+  /// Coefficients at t between those of t = 0 and 1, where they are linear in t.
+  template <class C, class X>
+  static Coefficients<Meet<C, X>> between(const Coefficients<C>& a, const Coefficients<C>& b, const X& t) {
+    return {a.B + t * (b.B - a.B), a.ratio_ini + t * (b.ratio_ini - a.ratio_ini),
+            a.s_max + t * (b.s_max - a.s_max), a.F_max + t * (b.F_max - a.F_max),
+            a.beta_F + t * (b.beta_F - a.beta_F)};
+  }
   /// dy/dt along a stretch where the coefficients are `c`. False where it is not defined: P* <= 0, or
   /// saturation values that are not > 0.
   template <class C, class S, class Y>

@@ -27,8 +27,8 @@ enum class LightMethod {
   rosenbrock       ///< RODAS 4(3)
 };
 
-/// The coefficients of a form along a stretch: taken once where the volume rests, anew at every stage where
-/// it moves.
+/// The rates of a form along a stretch. Coefficients are taken once where the volume rests; where only its
+/// slopes move, they do so in proportion to t; else they are taken anew at every stage.
 template <class F, class T>
 class StretchRate {
  public:
@@ -36,22 +36,37 @@ class StretchRate {
 
   StretchRate(const F& form, const BasicStretch<T>& stretch, const BasicDirection<T>& direction,
               const Coefficients& at_start)
-      : form_(form), stretch_(stretch), direction_(direction), at_start_(at_start) {}
+      : form_(form), stretch_(stretch), direction_(direction), at_start_(at_start) {
+    if constexpr (!std::is_same_v<T, double>)
+      if (rests()) at_end_ = form.coefficients(stretch.nu(T(1.0)));
+  }
 
   template <class X, class Y>
   bool operator()(const X& t, const Y* y, Y* dydt) const {
-    if (constant_volume()) return form_.rate(at_start_, stretch_, direction_, y, dydt);
-    return rate_at(form_, stretch_, direction_, t, y, dydt);
+    if (!rests()) return rate_at(form_, stretch_, direction_, t, y, dydt);
+    if constexpr (std::is_same_v<T, double>)
+      return form_.rate(at_start_, stretch_, direction_, y, dydt);
+    else
+      return form_.rate(F::between(at_start_, at_end_, t), stretch_, direction_, y, dydt);
   }
-  bool constant_volume() const { return vanishes(stretch_.eps_vol); }
-  double relaxation(const T* y) const { return form_.relaxation(at_start_, stretch_, direction_, y); }
+  /// How much of what changes along the whole stretch would be made up for in it, at the rate with which the
+  /// point relaxes or its volume leaves the neighbourhood of jamming.
+  double relaxations(const T* y) const {
+    double sum = form_.relaxation(at_start_, stretch_, direction_, y);
+    if (!rests())
+      sum += std::abs(value(stretch_.eps_vol)) /
+             std::abs(std::log(value(stretch_.nu_0) / value(form_.unjamming_density())));
+    return sum;
+  }
   std::array<double, F::size> scales(const T* y) const { return form_.scales(at_start_, y); }
 
  private:
+  bool rests() const { return value(stretch_.eps_vol) == 0; }
+
   const F& form_;
   const BasicStretch<T>& stretch_;
   const BasicDirection<T>& direction_;
-  Coefficients at_start_;
+  Coefficients at_start_, at_end_;
 };
 
 /// Carries variables along a stretch.
@@ -119,20 +134,17 @@ class LightRun {
   }
   /// The third order goes on, the second estimates its error: by about a quarter of the relaxations in the
   /// step too much, where these are what changes.
-  double overestimate(double h) const {
-    return rate_.constant_volume() ? std::min(1.0, rate_.relaxation(y_.data()) * h / 4) : 1;
-  }
+  double overestimate(double h) const { return std::min(1.0, rate_.relaxations(y_.data()) * h / 4); }
   double target() const { return safety * tolerance_.rtol; }
 
   LightMethod choose(double h) const {
-    const double lambda = rate_.relaxation(y_.data());
-    if (!(lambda * (1 - t_) < stiff)) return LightMethod::rosenbrock;
-    const double z = lambda * h;  // the second order errs by about z^3/12
-    return rate_.constant_volume() && z * z * z * z < 12 * target() ? LightMethod::explicit_third
-                                                                    : LightMethod::explicit_fifth;
+    const double all = rate_.relaxations(y_.data());
+    if (!(all * (1 - t_) < stiff)) return LightMethod::rosenbrock;
+    const double z = all * h;  // the second order errs by about z^3/12
+    return z * z * z * z < 12 * target() ? LightMethod::explicit_third : LightMethod::explicit_fifth;
   }
   double first_step(double left) const {
-    const double lambda = rate_.relaxation(y_.data());
+    const double lambda = rate_.relaxations(y_.data());
     return lambda > 0 ? std::min(left, 2 * std::pow(target(), 1. / 6) / lambda) : left;
   }
 

@@ -110,6 +110,12 @@ struct BasicReduced : BasicReducedPoint<P> {
     return {saturation(laws.s_max, nu), saturation(laws.beta_s, nu), saturation(laws.F_max, nu),
             saturation(laws.beta_F, nu)};
   }
+  /// Coefficients at t between those of t = 0 and 1, where they are linear in t.
+  template <class C, class X>
+  static Coefficients<Meet<C, X>> between(const Coefficients<C>& a, const Coefficients<C>& b, const X& t) {
+    return {a.s_max + t * (b.s_max - a.s_max), a.beta_s + t * (b.beta_s - a.beta_s),
+            a.F_max + t * (b.F_max - a.F_max), a.beta_F + t * (b.beta_F - a.beta_F)};
+  }
   /// dy/dt along a stretch where the coefficients are `c`.
   template <class C, class S, class Y>
   bool rate(const Coefficients<C>& c, const BasicStretch<S>& stretch, const BasicDirection<S>&, const Y* y,
