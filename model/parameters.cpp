@@ -248,6 +248,12 @@ const ModuliLaws& ParameterSet::need_moduli(const std::string& why) const {
   return *moduli;
 }
 
+std::pair<const Parameter&, const Parameter&> ParameterSet::need_energy(const std::string& why) const {
+  const ModuliLaws& laws = need_moduli(why);
+  if (!laws.a_F) throw Error(file, "moduli.a_F", "is missing; " + why + " needs it");
+  return {*laws.a_F, *laws.a_s};
+}
+
 const MemoryLaws& ParameterSet::need_memory(const std::string& why) const {
   if (!memory) throw Error(file, "memory", "is missing; " + why + " needs it");
   return *memory;

@@ -87,6 +87,8 @@ struct ParameterSet {
   const PackingLaw& packing(const std::string& mode, const std::string& why) const;
   const SaturationLaw& saturation(const std::string& quantity, const std::string& why) const;
   const ModuliLaws& need_moduli(const std::string& why) const;
+  /// moduli.a_F and moduli.a_s.
+  std::pair<const Parameter&, const Parameter&> need_energy(const std::string& why) const;
   const MemoryLaws& need_memory(const std::string& why) const;
 };
 
