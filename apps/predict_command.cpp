@@ -72,7 +72,9 @@ void echo_start(Terminal& terminal, const model::Prediction& prediction) {
 
 model::PredictOptions read_options(const Arguments& arguments) {
   model::PredictOptions options;
-  options.form = model::form_of(arguments.form);
+  const model::Choice choice = model::choice_of(arguments.form);
+  options.form = choice.form;
+  options.terms = choice.terms;
   if (!arguments.rtol.empty()) options.rtol = read_number("--rtol", arguments.rtol, above_up_to(0, 0.1));
   if (!arguments.rows.empty())
     options.rows_per_leg = static_cast<int>(read_whole_number("--rows", arguments.rows, 1, 100'000));
@@ -139,7 +141,9 @@ Action add_predict(CLI::App& program) {
       ->required();
   command->add_option("-o,--output", arguments->output, "table to write (default: standard output)")
       ->type_name("FILE.csv");
-  command->add_option("--form", arguments->form, "reduced_closed, reduced or coupled")
+  command
+      ->add_option("--form", arguments->form,
+                   "reduced_closed, reduced, coupled or coupled_3_14; coupled takes terms: coupled+energy")
       ->type_name("FORM")
       ->capture_default_str();
   command->add_option("--rtol", arguments->rtol, "relative tolerance of the integration (default: 1e-8)")

@@ -47,6 +47,8 @@ void add_moduli_rows(const model::ParameterSet& set, const Add& add) {
   add("moduli.nu_c", m.nu_c);
   add("moduli.a_I", m.a_I);
   add("moduli.a_II", m.a_II);
+  if (m.a_F) add("moduli.a_F", *m.a_F);
+  if (m.a_s) add("moduli.a_s", *m.a_s);
   add("moduli.GB_max", m.GB_max);
   add("moduli.Fv_min", m.Fv_min);
   add("moduli.Fv_alpha", m.Fv_alpha);

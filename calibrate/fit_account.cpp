@@ -28,7 +28,7 @@ Pool pool_of(const RecordFolder& folder, const std::string& mode, Role role, con
              std::vector<LeftOut>* left_out) {
   Pool pool;
   for (const TestRecord& test : folder.tests) {
-    if (test.mode != mode || test.role != role) continue;
+    if (test.mode != mode || test.role != role || test.sheared_along) continue;
     Counted counted;
     PackingSeries series =
         is_shear(mode) ? steady_state(test, selection, counted) : unloading_branch(test, selection, counted);
@@ -123,7 +123,7 @@ std::optional<PackingFit> narrow_fit(const Account& account, const RecordFolder&
 void fit_mode(Account& account, const RecordFolder& folder, const std::string& mode, Role role,
               const Reference& reference, const Selection& selection) {
   const bool any = std::any_of(folder.tests.begin(), folder.tests.end(), [&](const TestRecord& test) {
-    return test.mode == mode && test.role == role;
+    return test.mode == mode && test.role == role && !test.sheared_along;
   });
   const bool needed = role == Role::fit && (mode == "iso" || mode == "d2");
   if (!any && !needed) return;
@@ -288,7 +288,7 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
   account.nu_c = account.nu_c_fitted ? nu_c.value : thesis.value;
   const double nu_c_error = account.nu_c_fitted ? nu_c.stderr_.value_or(0) : thesis.error;
   for (const TestRecord& test : folder.tests) {
-    if (is_shear(test.mode)) fit_shear_test(account, test, selection);
+    if (is_shear(test.mode) && !test.sheared_along) fit_shear_test(account, test, selection);
   }
   for (const ShearQuantity quantity : shear_quantities)
     fit_density(account, quantity, nu_c_error, reference, selection);

@@ -58,6 +58,28 @@ std::optional<Record> kept_moduli(const fs::path& file) {
   return moduli;
 }
 
+/// The axis of the last shear before this scene, in the records that it starts from.
+std::optional<StrainTensor> shear_axis_before(const Json& scene, const fs::path& dir);
+
+/// The same with the record `dir` itself.
+std::optional<StrainTensor> shear_axis(const fs::path& dir) {
+  const fs::path file = dir / "scene.json";
+  if (!fs::exists(file)) return std::nullopt;
+  const Json scene = load_json(file);
+  Reader reader(scene, file.string());
+  const Path path = Path::read(reader.object("path"));
+  const std::vector<Leg> legs = path.nominal_legs(0.5, false);  // axes are those of any volume fraction
+  for (std::size_t i = legs.size(); i > 0; --i)
+    if (legs[i - 1].eps_dev[0] != legs[i - 1].eps_dev[1]) return SignConvention(legs).axis(i - 1);
+  return shear_axis_before(scene, dir);
+}
+
+std::optional<StrainTensor> shear_axis_before(const Json& scene, const fs::path& dir) {
+  const Json preparation = scene.value("preparation", Json::object());
+  if (!preparation.contains("snapshot")) return std::nullopt;
+  return shear_axis((dir / preparation["snapshot"].get<std::string>()).parent_path());
+}
+
 TestRecord read_record(const fs::path& dir, Role role) {
   TestRecord test;
   test.name = dir.filename().string();
@@ -70,6 +92,7 @@ TestRecord read_record(const fs::path& dir, Role role) {
   test.material = Material::read(reader.object("material"));
   test.path = Path::read(reader.object("path"));
   test.mode = mode_of(test.path);
+  test.sheared_along = shear_axis_before(json, dir);
   test.rows = Record::read_csv(table, needed_columns);
   check_row_count(json, test.path, test.rows, table);
   test.moduli = kept_moduli(dir / "moduli.csv");
@@ -163,6 +186,16 @@ std::size_t first_shear_leg(const TestRecord& test) {
   const auto shears = [](const Leg& leg) { return leg.mode == Mode::d2 || leg.mode == Mode::d3; };
   return static_cast<std::size_t>(std::find_if(test.legs.begin(), test.legs.end(), shears) -
                                   test.legs.begin());
+}
+
+std::size_t end_of_first_loading(const TestRecord& test) {
+  const std::size_t first = first_shear_leg(test);
+  const auto forward = [&](std::size_t i) { return test.legs[i].eps_dev[1] > test.legs[i].eps_dev[0]; };
+  std::size_t end = first;
+  while (end < test.legs.size() && test.legs[end].mode == test.legs[first].mode &&
+         forward(end) == forward(first))
+    ++end;
+  return end;
 }
 
 std::size_t last_unloading_leg(const TestRecord& test) {

@@ -25,6 +25,9 @@ struct TestRecord {
   Path path;
   double nu_start = 0;  ///< where the path starts
   std::vector<Leg> legs;
+  /// The axis along which its packing was sheared before, as the scenes of the records say that it starts
+  /// from; none where it was not, or where these records are not beside it.
+  std::optional<StrainTensor> sheared_along;
   Record rows;
   std::optional<Record> moduli;  ///< of states along the path, where moduli.csv is kept
 };
@@ -52,6 +55,8 @@ RecordFolder read_records(const std::filesystem::path& dir);
 /// The index of the first leg that shears, and of the last one that decompresses; legs.size() if there is
 /// none.
 std::size_t first_shear_leg(const TestRecord& test);
+/// The index after the last leg that goes on from there in the same mode and direction.
+std::size_t end_of_first_loading(const TestRecord& test);
 std::size_t last_unloading_leg(const TestRecord& test);
 
 }  // namespace grainlaw::calibrate

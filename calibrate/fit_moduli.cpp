@@ -9,8 +9,9 @@
 namespace grainlaw::calibrate {
 namespace {
 
-/// Values closer than this count as one: of F_v, F_dev, and sigma*_dev F_dev.
-constexpr double F_v_resolution = 0.05, F_dev_resolution = 2e-3, product_resolution = 1e-6;
+/// Values closer than this count as one: of F_v, F_dev, F_dev/F_v, and sigma*_dev F_dev.
+constexpr double F_v_resolution = 0.05, F_dev_resolution = 2e-3, share_resolution = 3e-4,
+                 product_resolution = 1e-6;
 constexpr int starts = 12;
 
 struct BulkLaw {  // p0, gamma_p, nu_c; F_v is at.x, nu is at.known
@@ -29,6 +30,13 @@ struct Proportional {  // the factor
   template <class T>
   T operator()(const T* p, const FitPoint& at) const {
     return p[0] * at.x;
+  }
+};
+
+struct EnergyAnisotropyLaw {  // a_F, a_s; F_dev/F_v is at.x, s_dev is at.known
+  template <class T>
+  T operator()(const T* p, const FitPoint& at) const {
+    return p[0] * at.x + p[1] * at.known;
   }
 };
 
@@ -113,6 +121,21 @@ FitProblem second_anisotropy_problem(const std::vector<ModuliSeries>& series, co
   return anisotropy_problem(series, &ModuliState::A2, known_parameter(known, "a_II", 1, -10, 10, 1));
 }
 
+FitProblem energy_anisotropy_problem(const std::vector<ModuliSeries>& series, const KnownValues& known) {
+  FitProblem problem;
+  problem.law = differentiable<2>(EnergyAnisotropyLaw{});
+  problem.series = points_of(series, [](const ModuliState& s) {
+    const double from_A1 = s.A1 + 2.0 / 9 * s.sigma_dev;
+    const double from_A2 = 2.0 / 3 * (s.A2 - 2.0 / 3 * s.sigma_dev);
+    const double B0 = s.B - 2.0 / 3 * s.P;
+    return FitPoint{s.F_dev / s.F_v, 0.5 * (from_A1 + from_A2) / B0, s.sigma_dev / s.P, 0};
+  });
+  problem.x_resolution = share_resolution;
+  problem.parameters = {known_parameter(known, "a_F", 3, -50, 50, 3, 1),
+                        known_parameter(known, "a_s", 0.2, -10, 10, 0.3, 0)};
+  return problem;
+}
+
 FitProblem initial_ratio_problem(const std::vector<ModuliSeries>& series, const KnownValues& known) {
   FitProblem problem;
   problem.law = differentiable<3>(InitialRatioLaw{});
@@ -149,11 +172,13 @@ ModuliFit fit_moduli(const std::vector<ModuliSeries>& series, const model::Conta
   out.B_law = bulk_modulus_problem(series, contacts, g3, nu_c, known);
   out.A1_law = first_anisotropy_problem(series, known);
   out.A2_law = second_anisotropy_problem(series, known);
+  out.A_law = energy_anisotropy_problem(series, known);
   out.GB_ini_law = initial_ratio_problem(series, known);
   out.G_law = shear_modulus_problem(series, known);
   out.B = fit(out.B_law);
   out.A1 = fit(out.A1_law);
   out.A2 = fit(out.A2_law);
+  out.A = fit(out.A_law);
   out.GB_ini = fit(out.GB_ini_law);
   out.G = fit(out.G_law);
   return out;

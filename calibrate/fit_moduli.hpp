@@ -1,5 +1,6 @@
 // Fits of the small-strain moduli over the state of a packing: B of Eq. 4.11, A1/B and A2/B of Eqs. 4.12 and
-// 4.13, the initial G/B of Eq. 4.14 and its decrease of Eq. 4.15. Group moduli of a parameter set.
+// 4.13, the initial G/B of Eq. 4.14 and its decrease of Eq. 4.15; and, past the thesis, A/B0 of the energy,
+// which gives A1 and A2 at once. Group moduli of a parameter set.
 #pragma once
 
 #include <string>
@@ -14,7 +15,7 @@ namespace grainlaw::calibrate {
 /// A packing in balance and its moduli, all over k* = k/(2<r>); signs count along the axis of shear.
 struct ModuliState {
   double eps_dev = 0;  ///< of the test's path, where it was taken
-  double nu = 0, sigma_dev = 0, F_v = 0, F_dev = 0;
+  double nu = 0, P = 0, sigma_dev = 0, F_v = 0, F_dev = 0;
   double B = 0, A1 = 0, A2 = 0, G = 0;  ///< G = G_oct
 };
 
@@ -39,6 +40,11 @@ FitProblem bulk_modulus_problem(const std::vector<ModuliSeries>& series, const m
 FitProblem first_anisotropy_problem(const std::vector<ModuliSeries>& series, const KnownValues& known);
 FitProblem second_anisotropy_problem(const std::vector<ModuliSeries>& series, const KnownValues& known);
 
+/// A/B0 = a_F F_dev/F_v + a_s s_dev, with B0 = B - (2/3) P* and A those of the second derivative of the
+/// energy: A = A1 + (2/9) sigma*_dev = (2/3) (A2 - (2/3) sigma*_dev), of which y is the mean. x is F_dev/F_v,
+/// known is s_dev. Parameters a_F, a_s.
+FitProblem energy_anisotropy_problem(const std::vector<ModuliSeries>& series, const KnownValues& known);
+
 /// (G/B)_ini = GB_max {1 - exp[-(F_v - Fv_min)/Fv_alpha]} (Eq. 4.14): one point per test, the means over its
 /// states with |eps_dev| <= initial_strain. Parameters GB_max, Fv_min, Fv_alpha.
 FitProblem initial_ratio_problem(const std::vector<ModuliSeries>& series, const KnownValues& known);
@@ -49,8 +55,8 @@ FitProblem shear_modulus_problem(const std::vector<ModuliSeries>& series, const 
 
 /// Group moduli.
 struct ModuliFit {
-  FitResult B, A1, A2, GB_ini, G;
-  FitProblem B_law, A1_law, A2_law, GB_ini_law, G_law;  ///< as fitted, with their data
+  FitResult B, A1, A2, A, GB_ini, G;
+  FitProblem B_law, A1_law, A2_law, A_law, GB_ini_law, G_law;  ///< as fitted, with their data
 };
 
 /// All of them; never throws for want of data, see FitEstimate::determined.

@@ -58,6 +58,18 @@ std::function<double(double)> density_of(const model::ContactCurve& contacts, do
   };
 }
 
+/// s_dev where F_dev/F_v has this value, by the mean ratio of the two over the states: what the law of A
+/// needs for a curve over one of its two variables.
+std::function<double(double)> stress_ratio_of(const FitProblem& law) {
+  double product = 0, square = 0;
+  for (const FitSeries& series : law.series)
+    for (const FitPoint& point : series.points) {
+      product += point.x * point.known;
+      square += point.x * point.x;
+    }
+  return [ratio = square > 0 ? product / square : 0](double share) { return ratio * share; };
+}
+
 class Entries {
  public:
   Entries(Account& account, const Tables& tables, const Reference& reference) : account_(account) {
@@ -98,6 +110,12 @@ void add_entries(Account& account, const Tables& tables, const ModuliFit& fit, c
   entries.x("F_dev", "deviatoric fabric F_dev");
   entries.add("A1", "A1/B = a_I F_dev (Eq. 4.12)", "first anisotropy modulus, over B", fit.A1_law, fit.A1);
   entries.add("A2", "A2/B = a_II F_dev (Eq. 4.13)", "second anisotropy modulus, over B", fit.A2_law, fit.A2);
+  entries.x("F_dev/F_v", "share of the fabric that is deviatoric, F_dev/F_v");
+  entries.known_at(stress_ratio_of(fit.A_law));
+  entries.add("A",
+              "A/B_0 = a_F F_dev/F_v + a_s s_dev, A = A1 + (2/9) σ*_dev = (2/3) [A2 − (2/3) σ*_dev], B_0 = B "
+              "− (2/3) P*",
+              "anisotropy modulus without prestress, over B_0", fit.A_law, fit.A);
   entries.x("F_v", "isotropic fabric F_v");
   entries.add("GB_ini", "(G/B)_ini = (G/B)_max {1 − exp[−(F_v − F_v_min)/F_v_alpha]} (Eq. 4.14)",
               "G/B before shear", fit.GB_ini_law, fit.GB_ini);

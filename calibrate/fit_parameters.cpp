@@ -236,6 +236,10 @@ std::optional<ModuliLaws> moduli_laws(const ModuliFit& fit, const Reference& ref
                      fill(law, decrease_keys, fit.G, fallback, thesis, reference);
   if (!known) return std::nullopt;
   law.g3 = reference.fabric_factor();
+  if (fit.A.ran && fit.A.determined()) {
+    law.a_F = from_estimate(fit.A["a_F"], thesis, reference, "");
+    law.a_s = from_estimate(fit.A["a_s"], thesis, reference, "");
+  }
   return law;
 }
 

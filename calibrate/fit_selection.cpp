@@ -9,13 +9,19 @@
 namespace grainlaw::calibrate {
 namespace {
 
-std::vector<std::size_t> rows_of_leg(const TestRecord& test, std::size_t leg) {
+/// Rows of the legs from `leg` to before `end`.
+std::vector<std::size_t> rows_of_legs(const TestRecord& test, std::size_t leg, std::size_t end) {
   std::vector<std::size_t> rows;
   const std::vector<double>& segment = test.rows["segment"];
   for (std::size_t i = 0; i < segment.size(); ++i) {
-    if (static_cast<std::size_t>(segment[i]) == leg) rows.push_back(i);
+    const auto at = static_cast<std::size_t>(segment[i]);
+    if (at >= leg && at < end) rows.push_back(i);
   }
   return rows;
+}
+
+std::vector<std::size_t> rows_of_first_loading(const TestRecord& test) {
+  return rows_of_legs(test, first_shear_leg(test), end_of_first_loading(test));
 }
 
 /// Slow enough to be a state; a record that does not say is taken at its word.
@@ -58,7 +64,7 @@ PackingSeries unloading_branch(const TestRecord& test, const Selection& selectio
     counted.reason = "its path never decreases the volume fraction, and these laws are fitted to unloading";
     return series;
   }
-  for (const std::size_t row : rows_of_leg(test, leg)) {
+  for (const std::size_t row : rows_of_legs(test, leg, leg + 1)) {
     const bool take =
         test.rows["P"][row] >= selection.P_min && at_rest(test, row, selection) && has_contacts(test, row);
     if (take) series.states.push_back(state_at(test, row));
@@ -78,7 +84,7 @@ PackingSeries steady_state(const TestRecord& test, const Selection& selection, C
   PackingSeries series{test.name, test.seed, {}};
   counted = {};
   std::vector<std::size_t> rows;
-  for (const std::size_t row : rows_of_leg(test, first_shear_leg(test))) {
+  for (const std::size_t row : rows_of_first_loading(test)) {
     const bool take = std::abs(test.rows["eps_dev"][row]) >= selection.steady_from && has_contacts(test, row);
     if (take) rows.push_back(row);
     ++(take ? counted.rows : counted.left_out);
@@ -102,7 +108,7 @@ PackingSeries steady_state(const TestRecord& test, const Selection& selection, C
 }
 
 std::string steady_rule(const Selection& selection) {
-  return "one point per run: means over the rows of the first shear leg with |eps_dev| >= " +
+  return "one point per run: means over the rows of the first loading with |eps_dev| >= " +
          number(selection.steady_from) + ", of runs whose mean P >= " + number(selection.P_min);
 }
 
@@ -120,7 +126,7 @@ ShearCurve first_loading(const TestRecord& test, const std::string& quantity, co
   curve.projected = column.projected;
   const double direction = ran.eps_dev[1] > ran.eps_dev[0] ? 1 : -1;
   double P = 0;
-  for (const std::size_t row : rows_of_leg(test, leg)) {
+  for (const std::size_t row : rows_of_first_loading(test)) {
     const double value = column.values[row];
     ++(std::isfinite(value) ? counted.rows : counted.left_out);
     if (!std::isfinite(value)) continue;
@@ -141,7 +147,7 @@ ShearCurve first_loading(const TestRecord& test, const std::string& quantity, co
 }
 
 std::string loading_rule(const Selection& selection) {
-  return "rows of the first shear leg, of runs whose mean P there >= " + number(selection.P_min);
+  return "rows of the first loading, of runs whose mean P there >= " + number(selection.P_min);
 }
 
 std::optional<RunValue> steady_mean(const ShearCurve& curve, const Selection& selection) {

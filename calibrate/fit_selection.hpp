@@ -34,13 +34,13 @@ struct Counted {
 PackingSeries unloading_branch(const TestRecord& test, const Selection& selection, Counted& counted);
 std::string unloading_rule(const Selection& selection);
 
-/// One state: means over the rows of the first shear leg with |eps_dev| >= steady_from, with their errors
+/// One state: means over the rows of the first loading with |eps_dev| >= steady_from, with their errors
 /// from the rows' autocorrelation. Nothing is taken if the leg has too few such rows or if the mean of P is
 /// below P_min.
 PackingSeries steady_state(const TestRecord& test, const Selection& selection, Counted& counted);
 std::string steady_rule(const Selection& selection);
 
-/// The stress ratio or the fabric ("s_dev", "F_dev") over the first shear leg, counted positive along it: the
+/// The stress ratio or the fabric ("s_dev", "F_dev") over the first loading, counted positive along it: the
 /// projection on its deviator where the record has components.
 ShearCurve first_loading(const TestRecord& test, const std::string& quantity, const Selection& selection,
                          Counted& counted);

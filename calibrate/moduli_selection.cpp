@@ -23,6 +23,7 @@ ModuliState state_at(const Record& table, std::size_t row) {
   ModuliState s;
   s.eps_dev = field(table, "eps_dev", row);
   s.nu = table["nu"][row];
+  s.P = table["P"][row];
   s.sigma_dev = table["sigma_dev"][row];
   s.F_v = table["F_v"][row];
   s.F_dev = table["F_dev"][row];

@@ -1,8 +1,47 @@
 #include "grainlaw/model/closure.hpp"
 
+#include <algorithm>
+#include <initializer_list>
+#include <sstream>
+#include <vector>
+
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::model {
+
+namespace {
+
+constexpr Form forms[] = {Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14};
+
+/// A term by name, and the forms that have a place for it.
+struct Term {
+  const char* name;
+  bool Terms::*flag;
+  std::initializer_list<Form> forms;
+};
+const Term all_terms[] = {{"energy", &Terms::energy, {Form::coupled}}};
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// Adds the term of this name to the choice.
+void add_term(Choice& choice, const std::string& name, const std::string& whole) {
+  std::vector<std::string> names;
+  for (const Term& term : all_terms) {
+    if (std::find(term.forms.begin(), term.forms.end(), choice.form) == term.forms.end()) continue;
+    names.push_back(term.name);
+    if (name != term.name) continue;
+    choice.terms.*term.flag = true;
+    return;
+  }
+  const std::string can = names.empty() ? "takes no terms" : "takes the terms " + listed(names);
+  throw Error("", "form", name_of(choice.form) + " " + can + ", got \"" + whole + "\"");
+}
+
+}  // namespace
 
 std::string name_of(Form form) {
   switch (form) {
@@ -12,14 +51,35 @@ std::string name_of(Form form) {
       return "reduced";
     case Form::coupled:
       return "coupled";
+    case Form::coupled_3_14:
+      return "coupled_3_14";
   }
   return "";
 }
 
 Form form_of(const std::string& name) {
-  for (const Form form : {Form::reduced_closed, Form::reduced, Form::coupled})
+  std::vector<std::string> names;
+  for (const Form form : forms) {
     if (name == name_of(form)) return form;
-  throw Error("", "form", "must be one of reduced_closed, reduced, coupled, got \"" + name + "\"");
+    names.push_back(name_of(form));
+  }
+  throw Error("", "form", "must be one of " + listed(names) + ", got \"" + name + "\"");
+}
+
+std::string name_of(const Choice& choice) {
+  std::string name = name_of(choice.form);
+  for (const Term& term : all_terms)
+    if (choice.terms.*term.flag) name += std::string("+") + term.name;
+  return name;
+}
+
+Choice choice_of(const std::string& name) {
+  std::istringstream parts(name);
+  std::string part;
+  std::getline(parts, part, '+');
+  Choice choice{form_of(part), {}};
+  while (std::getline(parts, part, '+')) add_term(choice, part, name);
+  return choice;
 }
 
 namespace {
@@ -46,11 +106,23 @@ BasicModuli<P> moduli_of(const ModuliLaws& m, const Reading<P>& read) {
           read(m.a_II), read(m.g_I),     read(m.GB_max), read(m.Fv_min), read(m.Fv_alpha)};
 }
 
+/// Fills in what the terms need.
+template <class P>
+void add_terms(BasicLaws<P>& laws, const ParameterSet& parameters, const Terms& terms, const std::string& who,
+               const Reading<P>& read) {
+  laws.terms = terms;
+  if (terms.energy) {
+    const auto& [a_F, a_s] = parameters.need_energy(who);
+    laws.moduli.a_F = read(a_F);
+    laws.moduli.a_s = read(a_s);
+  }
+}
+
 }  // namespace
 
 template <class P>
-BasicLaws<P> laws_of(const ParameterSet& parameters, Form form, const Reading<P>& read) {
-  const std::string who = "the " + name_of(form) + " form";
+BasicLaws<P> laws_of(const ParameterSet& parameters, const Choice& choice, const Reading<P>& read) {
+  const std::string who = "the " + name_of(choice) + " form";
   const Closure& closure = parameters.closure;
   BasicLaws<P> laws;
   laws.pressure = pressure_of(parameters.packing(closure.P, who + " (closure.P)"), read);
@@ -64,18 +136,21 @@ BasicLaws<P> laws_of(const ParameterSet& parameters, Form form, const Reading<P>
   laws.s_max = saturation_of(parameters.saturation("s_max", who), read);
   laws.F_max = saturation_of(parameters.saturation("F_max", who), read);
   laws.beta_F = saturation_of(parameters.saturation("beta_F", who), read);
-  if (form == Form::coupled)
+  if (choice.form == Form::coupled || choice.form == Form::coupled_3_14)
     laws.moduli = moduli_of(parameters.need_moduli(who), read);
   else
     laws.beta_s = saturation_of(parameters.saturation("beta_s", who), read);
+  if (choice.form == Form::coupled_3_14 && parameters.moduli->a_I.value == 0)
+    throw Error(parameters.file, "moduli.a_I.value", "must not be 0 for " + who + ", whose A is a_I B F_dev");
+  add_terms(laws, parameters, choice.terms, who, read);
   return laws;
 }
 
-template BasicLaws<double> laws_of(const ParameterSet&, Form, const Reading<double>&);
-template BasicLaws<Slopes> laws_of(const ParameterSet&, Form, const Reading<Slopes>&);
+template BasicLaws<double> laws_of(const ParameterSet&, const Choice&, const Reading<double>&);
+template BasicLaws<Slopes> laws_of(const ParameterSet&, const Choice&, const Reading<Slopes>&);
 
-Laws laws_of(const ParameterSet& parameters, Form form) {
-  return laws_of<double>(parameters, form, [](const Parameter& parameter) { return parameter.value; });
+Laws laws_of(const ParameterSet& parameters, const Choice& choice) {
+  return laws_of<double>(parameters, choice, [](const Parameter& parameter) { return parameter.value; });
 }
 
 }  // namespace grainlaw::model

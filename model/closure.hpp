@@ -13,12 +13,29 @@ namespace grainlaw::model {
 enum class Form {
   reduced_closed,  ///< Eqs. 2.17, 2.18 with the current nu, the thesis's way on UNI; P* from Eq. 2.14
   reduced,         ///< their rate forms; P* from Eq. 2.14
-  coupled          ///< Eq. 4.16 with moduli 4.11 to 4.15
+  coupled,         ///< Eq. 4.16 with moduli 4.11 to 4.15
+  coupled_3_14     ///< Eq. 3.14, the thesis's earlier form, with the same B and G and one modulus A
 };
 
 std::string name_of(Form form);
 /// Throws Error listing the names.
 Form form_of(const std::string& name);
+
+/// Terms past the thesis that a form may take, off unless asked for.
+struct Terms {
+  bool energy = false;  ///< A1 and A2 from one energy (moduli.a_F, a_s) in place of Eqs. 4.12 and 4.13
+  bool operator==(const Terms&) const = default;
+};
+
+/// A form with its terms. Its name is that of the form, and after a plus that of each term:
+/// "coupled+energy".
+struct Choice {
+  Form form = Form::coupled;
+  Terms terms;
+};
+std::string name_of(const Choice& choice);
+/// Throws Error listing the names, or those of the terms that the form can take.
+Choice choice_of(const std::string& name);
 
 /// The laws of one form, as numbers.
 template <class P>
@@ -28,7 +45,8 @@ struct BasicLaws {
   P g3 = 1;                        ///< of F_v = g3 nu C: moduli.g3 where known, else Eq. 3.8 of material.w
   BasicSaturation<P> s_max, F_max, beta_F;
   BasicSaturation<P> beta_s;  ///< reduced forms only
-  BasicModuli<P> moduli;      ///< coupled form only
+  BasicModuli<P> moduli;      ///< coupled forms only
+  Terms terms;                ///< whose numbers are in the laws
 };
 using Laws = BasicLaws<double>;
 
@@ -39,8 +57,9 @@ using Reading = std::function<P(const Parameter&)>;
 /// Resolves the closure. Throws Error naming the parameter file and the row or group that the form needs and
 /// the set lacks. Instantiated for double and Slopes.
 template <class P>
-BasicLaws<P> laws_of(const ParameterSet& parameters, Form form, const Reading<P>& read);
-Laws laws_of(const ParameterSet& parameters, Form form);
+BasicLaws<P> laws_of(const ParameterSet& parameters, const Choice& choice, const Reading<P>& read);
+Laws laws_of(const ParameterSet& parameters, const Choice& choice);
+inline Laws laws_of(const ParameterSet& parameters, Form form) { return laws_of(parameters, {form, {}}); }
 
 /// The same laws for another history: phi_J in place of the nu_c of the pressure law, and every other nu_c in
 /// proportion (chapter 5: Eqs. 5.7 to 5.9, 5.12).

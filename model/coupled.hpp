@@ -35,13 +35,17 @@ struct BasicCoupled {
   /// Everything in the rates that depends on nu alone.
   template <class T>
   struct Coefficients {
-    T B, ratio_ini, s_max, F_max, beta_F;
+    T B, F_v, ratio_ini, s_max, F_max, beta_F;
   };
   template <class T>
   Coefficients<Meet<P, T>> coefficients(const T& nu) const {
+    const auto F_v = isotropic_fabric(laws.contacts, laws.g3, nu);
     return {bulk_modulus(laws.moduli, laws.contacts, nu),
-            initial_shear_ratio(laws.moduli, isotropic_fabric(laws.contacts, laws.g3, nu)),
-            saturation(laws.s_max, nu), saturation(laws.F_max, nu), saturation(laws.beta_F, nu)};
+            F_v,
+            initial_shear_ratio(laws.moduli, F_v),
+            saturation(laws.s_max, nu),
+            saturation(laws.F_max, nu),
+            saturation(laws.beta_F, nu)};
   }
 
   template <class T>
@@ -52,10 +56,21 @@ struct BasicCoupled {
   /// Coefficients at t between those of t = 0 and 1, where they are linear in t.
   template <class C, class X>
   static Coefficients<Meet<C, X>> between(const Coefficients<C>& a, const Coefficients<C>& b, const X& t) {
-    return {a.B + t * (b.B - a.B), a.ratio_ini + t * (b.ratio_ini - a.ratio_ini),
-            a.s_max + t * (b.s_max - a.s_max), a.F_max + t * (b.F_max - a.F_max),
+    return {a.B + t * (b.B - a.B),
+            a.F_v + t * (b.F_v - a.F_v),
+            a.ratio_ini + t * (b.ratio_ini - a.ratio_ini),
+            a.s_max + t * (b.s_max - a.s_max),
+            a.F_max + t * (b.F_max - a.F_max),
             a.beta_F + t * (b.beta_F - a.beta_F)};
   }
+
+  template <class C, class Y>
+  AnisotropyModuli<Meet<C, Y>> anisotropy_moduli(const Coefficients<C>& c, const Y& pressure, const Y& sigma,
+                                                 const Y& F) const {
+    if (laws.terms.energy) return anisotropy_moduli_of_energy(laws.moduli, c.B, c.F_v, pressure, sigma, F);
+    return {anisotropy_modulus_1(laws.moduli, c.B, F), anisotropy_modulus_2(laws.moduli, c.B, F)};
+  }
+
   /// dy/dt along a stretch where the coefficients are `c`. False where it is not defined: P* <= 0, or
   /// saturation values that are not > 0.
   template <class C, class S, class Y>
@@ -64,13 +79,14 @@ struct BasicCoupled {
     using std::abs;
     const Y &pressure = y[0], &sigma = y[1], &F = y[2];
     const S &v = stretch.eps_vol, &e = stretch.eps_dev;
-    const auto A1 = anisotropy_modulus_1(laws.moduli, c.B, F), A2 = anisotropy_modulus_2(laws.moduli, c.B, F);
+    // s = sigma/P; the event at smallest_pressure comes first
+    if (!(pressure > 0) && (!vanishes(e) || laws.terms.energy)) return false;
+    const auto [A1, A2] = anisotropy_moduli(c, pressure, sigma, F);
     dydt[0] = c.B * v;
     dydt[1] = A2 * v;
     dydt[2] = 0.0;
     if (vanishes(e)) return true;
-    // s = sigma/P; the event at smallest_pressure comes first.
-    if (!(pressure > 0 && c.s_max > 0 && c.F_max > 0 && c.beta_F >= 0)) return false;
+    if (!(c.s_max > 0 && c.F_max > 0 && c.beta_F >= 0)) return false;
     const auto q = stretch.q();
     const auto G = shear_modulus(laws.moduli, c.B, c.ratio_ini, sigma, F);
     const auto S_e = (1 - q * sigma / (pressure * c.s_max)) * (e / direction.S_I);

@@ -19,23 +19,25 @@ std::optional<std::string> out_of_range(const char* name, const Saturation& law,
 }  // namespace
 
 template <class P>
-BasicLaw<P> make_law(const ParameterSet& parameters, Form form, const Reading<P>& read) {
-  BasicLaws<P> laws = laws_of(parameters, form, read);
-  switch (form) {
+BasicLaw<P> make_law(const ParameterSet& parameters, const Choice& choice, const Reading<P>& read) {
+  BasicLaws<P> laws = laws_of(parameters, choice, read);
+  switch (choice.form) {
     case Form::reduced_closed:
       return BasicReducedClosed<P>{{std::move(laws)}};
     case Form::reduced:
       return BasicReduced<P>{{std::move(laws)}};
+    case Form::coupled_3_14:
+      return BasicCoupled314<P>{{std::move(laws)}};
     default:
       return BasicCoupled<P>{std::move(laws)};
   }
 }
 
-template BasicLaw<double> make_law(const ParameterSet&, Form, const Reading<double>&);
-template BasicLaw<Slopes> make_law(const ParameterSet&, Form, const Reading<Slopes>&);
+template BasicLaw<double> make_law(const ParameterSet&, const Choice&, const Reading<double>&);
+template BasicLaw<Slopes> make_law(const ParameterSet&, const Choice&, const Reading<Slopes>&);
 
-Law make_law(const ParameterSet& parameters, Form form) {
-  return make_law<double>(parameters, form, [](const Parameter& parameter) { return parameter.value; });
+Law make_law(const ParameterSet& parameters, const Choice& choice) {
+  return make_law<double>(parameters, choice, [](const Parameter& parameter) { return parameter.value; });
 }
 
 std::optional<std::string> objection(const Laws& laws, Form form, const Stretch& stretch) {
@@ -44,7 +46,7 @@ std::optional<std::string> objection(const Laws& laws, Form form, const Stretch&
     if (auto reason = out_of_range("s_max", laws.s_max, nu, false)) return reason;
     if (auto reason = out_of_range("F_max", laws.F_max, nu, false)) return reason;
     if (auto reason = out_of_range("beta_F", laws.beta_F, nu, true)) return reason;
-    if (form == Form::coupled) continue;
+    if (form != Form::reduced && form != Form::reduced_closed) continue;
     if (auto reason = out_of_range("beta_s", laws.beta_s, nu, true)) return reason;
   }
   return std::nullopt;

@@ -1,4 +1,4 @@
-// The law in its three forms behind one interface, as a material point with numbers of type double takes it.
+// The law in its forms behind one interface, as a material point with numbers of type double takes it.
 #pragma once
 
 #include <optional>
@@ -7,19 +7,21 @@
 
 #include "grainlaw/model/closure.hpp"
 #include "grainlaw/model/coupled.hpp"
+#include "grainlaw/model/coupled_3_14.hpp"
 #include "grainlaw/model/reduced.hpp"
 #include "grainlaw/model/state.hpp"
 
 namespace grainlaw::model {
 
 template <class P>
-using BasicLaw = std::variant<BasicReducedClosed<P>, BasicReduced<P>, BasicCoupled<P>>;
+using BasicLaw = std::variant<BasicReducedClosed<P>, BasicReduced<P>, BasicCoupled<P>, BasicCoupled314<P>>;
 using Law = BasicLaw<double>;
 
 /// Throws Error where the set lacks what the form needs.
 template <class P>
-BasicLaw<P> make_law(const ParameterSet& parameters, Form form, const Reading<P>& read);
-Law make_law(const ParameterSet& parameters, Form form);
+BasicLaw<P> make_law(const ParameterSet& parameters, const Choice& choice, const Reading<P>& read);
+Law make_law(const ParameterSet& parameters, const Choice& choice);
+inline Law make_law(const ParameterSet& parameters, Form form) { return make_law(parameters, {form, {}}); }
 
 template <class P>
 Form form_of(const BasicLaw<P>& law) {

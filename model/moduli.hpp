@@ -9,7 +9,8 @@
 
 namespace grainlaw::model {
 
-/// Numbers of Eqs. 4.11 to 4.15 (Table 4.1).
+/// Numbers of Eqs. 4.11 to 4.15 (Table 4.1), and of the law of the energy, which takes the place of 4.12 and
+/// 4.13.
 template <class P>
 struct BasicModuli {
   P p0 = 0;        ///< prefactor of B; Table 4.2's b times p0 in one number
@@ -22,6 +23,8 @@ struct BasicModuli {
   P GB_max = 0;    ///< (G/B)_ini at large F_v
   P Fv_min = 0;    ///< F_v where (G/B)_ini begins
   P Fv_alpha = 1;  ///< its growth in F_v, > 0
+  P a_F = 0;       ///< past the thesis: share of F_dev/F_v in A/B0
+  P a_s = 0;       ///< past the thesis: share of s_dev in A/B0
 };
 using Moduli = BasicModuli<double>;
 
@@ -47,6 +50,23 @@ auto anisotropy_modulus_1(const BasicModuli<P>& m, const C& B, const T& F_dev) {
 template <class P, class C, class T>
 auto anisotropy_modulus_2(const BasicModuli<P>& m, const C& B, const T& F_dev) {
   return m.a_II * B * F_dev;
+}
+
+/// A1 and A2 as derivatives of the stress.
+template <class T>
+struct AnisotropyModuli {
+  T A1, A2;
+};
+
+/// Past the thesis: A1 and A2 from one energy, whose second derivative is symmetric. With the prestress taken
+/// out, B0 = B - (2/3) P* and A = B0 (a_F F_dev/F_v + a_s s_dev); the stress, where it is coaxial with the
+/// strain, has the derivatives A1 = A - (2/9) sigma*_dev and A2 = (3/2) A + (2/3) sigma*_dev. P* > 0.
+template <class P, class C, class T>
+AnisotropyModuli<Meet<C, T>> anisotropy_moduli_of_energy(const BasicModuli<P>& m, const C& B, const C& F_v,
+                                                         const T& pressure, const T& sigma_dev,
+                                                         const T& F_dev) {
+  const auto A = (B - 2.0 / 3 * pressure) * (m.a_F * F_dev / F_v + m.a_s * sigma_dev / pressure);
+  return {A - 2.0 / 9 * sigma_dev, 1.5 * A + 2.0 / 3 * sigma_dev};
 }
 
 /// Eq. 4.14: (G/B)_ini = GB_max {1 - exp[-(F_v - Fv_min)/Fv_alpha]}. The thesis prints the exponent without

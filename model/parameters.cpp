@@ -139,6 +139,17 @@ MemoryLaws read_memory(Reader reader) {
   return memory;
 }
 
+ModuliLaws read_moduli(Reader reader) {
+  auto moduli = read_keys<ModuliLaws>(reader);
+  reader.optional({"a_F", "a_s"});
+  if (reader.has("a_F") || reader.has("a_s")) {  // one means nothing without the other
+    moduli.a_F = read_parameter(reader.object("a_F"), any_number());
+    moduli.a_s = read_parameter(reader.object("a_s"), any_number());
+  }
+  reader.finish();
+  return moduli;
+}
+
 std::map<std::string, PackingLaw> read_isotropic(Reader reader) {
   std::map<std::string, PackingLaw> rows;
   for (const auto& mode : modes)
@@ -188,7 +199,7 @@ ParameterSet ParameterSet::read(Reader reader) {
   set.closure = read_closure(reader.object("closure"));
   set.isotropic = read_isotropic(reader.object_or_empty("isotropic"));
   if (auto object = maybe_object(reader, "shear")) set.shear = read_shear(*object);
-  if (auto object = maybe_object(reader, "moduli")) set.moduli = read_group<ModuliLaws>(*object);
+  if (auto object = maybe_object(reader, "moduli")) set.moduli = read_moduli(*object);
   if (auto object = maybe_object(reader, "memory")) set.memory = read_memory(*object);
   reader.finish();
   return set;
@@ -207,7 +218,11 @@ Json ParameterSet::to_json() const {
     for (const auto& [quantity, member] : quantities)
       if ((*shear).*member) json["shear"][quantity] = group_json(*((*shear).*member));
   }
-  if (moduli) json["moduli"] = group_json(*moduli);
+  if (moduli) {
+    json["moduli"] = group_json(*moduli);
+    if (moduli->a_F) json["moduli"]["a_F"] = parameter_json(*moduli->a_F);
+    if (moduli->a_s) json["moduli"]["a_s"] = parameter_json(*moduli->a_s);
+  }
   if (memory) {
     json["memory"] = group_json(*memory);
     if (memory->phi_cr) json["memory"]["phi_cr"] = parameter_json(*memory->phi_cr);
@@ -231,6 +246,12 @@ const SaturationLaw& ParameterSet::saturation(const std::string& quantity, const
 const ModuliLaws& ParameterSet::need_moduli(const std::string& why) const {
   if (!moduli) throw Error(file, "moduli", "is missing; " + why + " needs it");
   return *moduli;
+}
+
+std::pair<const Parameter&, const Parameter&> ParameterSet::need_energy(const std::string& why) const {
+  const ModuliLaws& laws = need_moduli(why);
+  if (!laws.a_F) throw Error(file, "moduli.a_F", "is missing; " + why + " needs it");
+  return {*laws.a_F, *laws.a_s};
 }
 
 const MemoryLaws& ParameterSet::need_memory(const std::string& why) const {

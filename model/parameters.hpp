@@ -49,6 +49,7 @@ struct ShearLaws {
 /// moduli: Eqs. 4.11 to 4.15 (Table 4.1).
 struct ModuliLaws {
   Parameter p0, gamma_p, nu_c, g3, a_I, a_II, g_I, GB_max, Fv_min, Fv_alpha;
+  std::optional<Parameter> a_F, a_s;  ///< of the law past the thesis; both or none
   Moduli values() const;
 };
 
@@ -86,6 +87,8 @@ struct ParameterSet {
   const PackingLaw& packing(const std::string& mode, const std::string& why) const;
   const SaturationLaw& saturation(const std::string& quantity, const std::string& why) const;
   const ModuliLaws& need_moduli(const std::string& why) const;
+  /// moduli.a_F and moduli.a_s.
+  std::pair<const Parameter&, const Parameter&> need_energy(const std::string& why) const;
   const MemoryLaws& need_memory(const std::string& why) const;
 };
 

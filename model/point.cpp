@@ -17,7 +17,7 @@ System system_of(const Form& form, const Stretch& stretch, const Direction& dire
   system.jacobian = [&](double t, const double* y, double* J) {
     return jacobian_of(form, stretch, direction, t, y, J);
   };
-  if constexpr (std::is_same_v<Form, Coupled>)
+  if constexpr (std::is_base_of_v<Coupled, Form>)
     system.event = [](double, const double* y) { return y[0] - smallest_pressure; };
   return system;
 }

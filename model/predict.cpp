@@ -171,7 +171,7 @@ Walked walk_legs(MaterialPoint& point, const Path& path, const std::vector<Leg>&
 
 Prediction predict(const ParameterSet& parameters, const Path& path, const std::vector<Sample>& samples,
                    const PredictOptions& options) {
-  const StartState start = start_of(parameters, path, options.form);
+  const StartState start = start_of(parameters, path, {options.form, options.terms});
   const std::vector<Leg> legs = path.legs(start.state.nu);
   check_axes(path, legs);
   check_samples(samples, legs.size());
@@ -187,7 +187,7 @@ Prediction predict(const ParameterSet& parameters, const Path& path, const std::
 Prediction predict(const ParameterSet& parameters, const Path& path, const PredictOptions& options) {
   if (options.rows_per_leg < 1)
     throw Error("", "rows_per_leg", "must be >= 1, got " + std::to_string(options.rows_per_leg));
-  const StartState start = start_of(parameters, path, options.form);
+  const StartState start = start_of(parameters, path, {options.form, options.terms});
   return predict(parameters, path, even_samples(path.legs(start.state.nu), options.rows_per_leg), options);
 }
 

@@ -20,6 +20,7 @@ struct PredictOptions {
   double rtol = 1e-8;      ///< relative error of the state, > 0
   double atol = 1e-12;     ///< absolute error of P*, sigma*_dev, F_dev, s_dev, > 0
   int rows_per_leg = 100;  ///< evenly spaced in the leg's strain; a relaxation has one row, its end
+  Terms terms = {};        ///< past the thesis
 };
 
 /// A point of the path: leg (segment) and the fraction of its strain that is done.

@@ -13,11 +13,11 @@ namespace {
 /// Fills in one start after the other; what was given and what follows stand side by side in `echo`.
 class Filling {
  public:
-  Filling(const ParameterSet& parameters, const Path& path, Form form)
+  Filling(const ParameterSet& parameters, const Path& path, const Choice& choice)
       : parameters_(parameters),
         path_(path),
         start_(path.start),
-        result_{make_law(parameters, form), {}, {}, {}} {}
+        result_{make_law(parameters, choice), {}, {}, {}} {}
 
   StartState run() {
     fill_nu();
@@ -29,7 +29,10 @@ class Filling {
   }
 
  private:
-  bool coupled() const { return form_of(result_.law) == Form::coupled; }
+  bool coupled() const {
+    const Form form = form_of(result_.law);
+    return form == Form::coupled || form == Form::coupled_3_14;
+  }
   Laws& laws() { return laws_of(result_.law); }
   std::string pressure_law() const {
     return "the pressure law isotropic." + parameters_.closure.P + " (Eq. 2.14)" +
@@ -164,8 +167,8 @@ void Filling::settle() {
 
 }  // namespace
 
-StartState start_of(const ParameterSet& parameters, const Path& path, Form form) {
-  return Filling(parameters, path, form).run();
+StartState start_of(const ParameterSet& parameters, const Path& path, const Choice& choice) {
+  return Filling(parameters, path, choice).run();
 }
 
 }  // namespace grainlaw::model

@@ -21,6 +21,9 @@ struct StartState {
 
 /// Fills in `path.start`. Throws Error naming file and key for values that are missing or contradict one
 /// another.
-StartState start_of(const ParameterSet& parameters, const Path& path, Form form);
+StartState start_of(const ParameterSet& parameters, const Path& path, const Choice& choice);
+inline StartState start_of(const ParameterSet& parameters, const Path& path, Form form) {
+  return start_of(parameters, path, {form, {}});
+}
 
 }  // namespace grainlaw::model

@@ -20,10 +20,11 @@ constexpr std::size_t dots_per_test = 60;
 struct Axes {
   const char *name, *x, *y;
 };
-constexpr std::array<Axes, 5> all_axes{{
+constexpr std::array<Axes, 6> all_axes{{
     {"moduli.B", "fabric trace {/:Italic F}_v (–)", "bulk modulus {/:Italic B} (–)"},
     {"moduli.A1", "contact anisotropy {/:Italic F}_{dev} (–)", "{/:Italic A}_1/{/:Italic B} (–)"},
     {"moduli.A2", "contact anisotropy {/:Italic F}_{dev} (–)", "{/:Italic A}_2/{/:Italic B} (–)"},
+    {"moduli.A", "{/:Italic F}_{dev}/{/:Italic F}_v (–)", "{/:Italic A}/{/:Italic B}_0 (–)"},
     {"moduli.GB_ini", "fabric trace {/:Italic F}_v (–)", "({/:Italic G}/{/:Italic B})_{ini} (–)"},
     {"moduli.G", "{/:Italic σ}*_{dev} {/:Italic F}_{dev} (–)",
      "{/:Italic G}/{/:Italic B} − ({/:Italic G}/{/:Italic B})_{ini} (–)"},

@@ -206,7 +206,8 @@ Markup moduli_table(const Entries& entries) {
   if (!fitted) return {};
   return "<h3>Small-strain moduli (Eqs. 4.11 – 4.15), beside Table 4.1</h3>\n"_html +
          matrix(entries, "moduli", {""}, {"Value"_html},
-                {"p0", "gamma_p", "nu_c", "a_I", "a_II", "GB_max", "Fv_min", "Fv_alpha", "g_I", "g3"});
+                {"p0", "gamma_p", "nu_c", "a_I", "a_II", "a_F", "a_s", "GB_max", "Fv_min", "Fv_alpha", "g_I",
+                 "g3"});
 }
 
 /// A number that was not fitted here, with every row that shares it.

@@ -93,7 +93,7 @@ TEST_F(FitModuliRecords, GiveTheParametersBack) {
   EXPECT_EQ(m.g3.note, "Eq. 3.8 for w = 3");
   std::vector<std::string> names;
   for (const Json& fit : out.fits.at("fits")) names.push_back(fit.at("name"));
-  for (const char* name : {"moduli.B", "moduli.A1", "moduli.A2", "moduli.GB_ini", "moduli.G"})
+  for (const char* name : {"moduli.B", "moduli.A1", "moduli.A2", "moduli.A", "moduli.GB_ini", "moduli.G"})
     EXPECT_THAT(names, Contains(name));
 }
 

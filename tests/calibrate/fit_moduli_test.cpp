@@ -34,7 +34,8 @@ ModuliSeries along_shear(double nu, const std::string& seed) {
     // there.
     const double sheared = std::max(0.0, eps_dev - initial_strain);
     s.F_dev = 0.11 * (1 - std::exp(-40 * sheared));
-    s.sigma_dev = 0.15 * 0.03 * (1 - std::exp(-50 * sheared));
+    s.P = 0.03;
+    s.sigma_dev = 0.15 * s.P * (1 - std::exp(-50 * sheared));
     s.F_v = model::isotropic_fabric(contacts, g3, nu);
     s.B = model::bulk_modulus(table, contacts, nu);
     s.A1 = model::anisotropy_modulus_1(table, s.B, s.F_dev);
@@ -71,6 +72,21 @@ TEST(ModuliFits, BulkModulus) {
 TEST(ModuliFits, FirstAnisotropyModulus) { expect_value(fitted(campaign()).A1, "a_I", table.a_I); }
 
 TEST(ModuliFits, SecondAnisotropyModulus) { expect_value(fitted(campaign()).A2, "a_II", table.a_II); }
+
+/// States whose A1 and A2 are those of one energy, with A/B0 = a_F F_dev/F_v + a_s s_dev.
+TEST(ModuliFits, AnisotropyModulusOfTheEnergy) {
+  constexpr double a_F = 3.6, a_s = 0.15;
+  std::vector<ModuliSeries> series = campaign();
+  for (ModuliSeries& test : series)
+    for (ModuliState& s : test.states) {
+      const double A = (s.B - 2 * s.P / 3) * (a_F * s.F_dev / s.F_v + a_s * s.sigma_dev / s.P);
+      s.A1 = A - 2 * s.sigma_dev / 9;
+      s.A2 = 3 * A / 2 + 2 * s.sigma_dev / 3;
+    }
+  const FitResult fit = fitted(series).A;
+  expect_value(fit, "a_F", a_F);
+  expect_value(fit, "a_s", a_s);
+}
 
 TEST(ModuliFits, InitialShearRatio) {
   const ModuliFit fit = fitted(campaign());
@@ -135,7 +151,8 @@ Record rows(const std::vector<std::vector<double>>& some) {
     const char* names[] = {"segment",  "eps_dev",  "amplitude", "B",       "contacts_changed",
                            "unstable", "backbone", "contacts",  "residual"};
     for (std::size_t i = 0; i < row.size(); ++i) out[names[i]][k] = row[i];
-    for (const char* same : {"A1", "A2", "G_oct", "nu", "sigma_dev", "F_v", "F_dev"}) out[same][k] = row[3];
+    for (const char* same : {"A1", "A2", "G_oct", "nu", "P", "sigma_dev", "F_v", "F_dev"})
+      out[same][k] = row[3];
   }
   return out;
 }

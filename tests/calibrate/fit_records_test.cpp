@@ -95,6 +95,41 @@ TEST_F(FitRecords, ReturnTheParametersThatMadeTheRecords) {
   EXPECT_EQ(fit.F_max->Q_max.source, "assumed");
 }
 
+/// Such tests stop on the way, for others to start there.
+TEST_F(FitRecords, ALoadingInThreeLegsIsOne) {
+  const std::string whole = text_of(fitted());
+  for (const double nu : d2_densities) {
+    std::vector<Row> rows = thesis_.shear("d2", nu);
+    for (Row& row : rows) row.segment = (row.eps_dev > 0.05 + 1e-9) + (row.eps_dev > 0.15 + 1e-9);
+    write_record(record("d2-" + to_text(nu) + "-s1"), R"({"segments": [
+        {"mode": "d2", "controls": {"eps_dev": 0.05}}, {"mode": "d2", "controls": {"eps_dev": 0.15}},
+        {"mode": "d2", "controls": {"eps_dev": 0.4}}]})",
+                 rows);
+  }
+  EXPECT_EQ(text_of(fitted()), whole);
+}
+
+/// Compression and decompression of a sheared packing are no isotropic test: its jamming density is another.
+TEST_F(FitRecords, IsotropicStrainAfterShearIsNoIsotropicTest) {
+  const FitOutput before = fitted();
+  std::filesystem::copy(record("iso-s1"), record("down-s1"));
+  edit(dir() / "campaign.json", [](const std::string& text) {
+    Json campaign = Json::parse(text);
+    Json test = campaign["tests"][0];
+    test["name"] = "down";
+    test["from"] = {{"test", "d2-0.71"}, {"segment", 0}};
+    test["path"]["segments"][0]["controls"] = {{"nu", 0.72}};
+    campaign["tests"].push_back(test);
+    return campaign.dump(1);
+  });
+  edit(record("down-s1") / "scene.json", [](const std::string& text) {
+    Json scene = Json::parse(text);
+    scene["preparation"] = {{"snapshot", "../d2-0.71-s1/snapshots.h5"}, {"segment", 0}};
+    return scene.dump(1);
+  });
+  EXPECT_EQ(text_of(fitted()), text_of(before));
+}
+
 TEST_F(FitRecords, LeaveToTheThesisWhatNoRecordMeasures) {
   const FitOutput out = fitted();
   ASSERT_TRUE(out.parameters.moduli && out.parameters.memory);

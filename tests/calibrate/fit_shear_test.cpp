@@ -22,7 +22,7 @@ constexpr Row table[] = {{ShearQuantity::s_max, 0.1137, 0.09166, 7.916},
                          {ShearQuantity::beta_F, 0, 57.89, 5.366}};
 
 double value_of(const Row& row, double nu) {
-  return model::saturation({row.Q_max, row.Q_v, row.alpha, nu_c}, nu);
+  return model::saturation(model::Saturation{row.Q_max, row.Q_v, row.alpha, nu_c}, nu);
 }
 
 /// The D2 test of the thesis at nu: s_dev or F_dev over strain up to 0.4, as 2.17 and 2.18 have it.

@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr Form forms[] = {Form::reduced_closed, Form::reduced, Form::coupled};
+constexpr Form forms[] = {Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14};
 
 State start_at(const Law& law, double nu) {
   State state;

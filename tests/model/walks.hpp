@@ -10,9 +10,13 @@ namespace grainlaw::model {
 
 constexpr double tight_rtol = 1e-11, tight_atol = 1e-14;
 
+inline Prediction walk(const std::string& path, const Choice& choice, int rows = 20,
+                       const ParameterSet& parameters = thesis()) {
+  return predict(parameters, path_of(path), {choice.form, tight_rtol, tight_atol, rows, choice.terms});
+}
 inline Prediction walk(const std::string& path, Form form, int rows = 20,
                        const ParameterSet& parameters = thesis()) {
-  return predict(parameters, path_of(path), {form, tight_rtol, tight_atol, rows});
+  return walk(path, Choice{form, {}}, rows, parameters);
 }
 
 inline double last(const Prediction& prediction, const char* column) {
