@@ -19,6 +19,9 @@
 
 namespace grainlaw::model {
 
+/// Errors of steps add up along a path, P* forgets none: each is held to this part of the tolerance.
+inline constexpr double light_safety = 0.002;
+
 /// Which method a light step takes.
 enum class LightMethod {
   automatic,       ///< the cheapest that the stretch allows
@@ -116,8 +119,6 @@ class LightRun {
 
  private:
   static constexpr int most_steps = 100'000;
-  /// Errors of steps add up along a path, P* forgets none: each is held to this part of the tolerance.
-  static constexpr double safety = 0.002;
   /// Relaxations within a stretch from which explicit steps would be many.
   static constexpr double stiff = 150;
 
@@ -135,7 +136,7 @@ class LightRun {
   /// The third order goes on, the second estimates its error: by about a quarter of the relaxations in the
   /// step too much, where these are what changes.
   double overestimate(double h) const { return std::min(1.0, rate_.relaxations(y_.data()) * h / 4); }
-  double target() const { return safety * tolerance_.rtol; }
+  double target() const { return light_safety * tolerance_.rtol; }
 
   LightMethod choose(double h) const {
     const double all = rate_.relaxations(y_.data());
@@ -171,7 +172,7 @@ class LightRun {
       worst = std::max(worst, error);
     }
     if (method == LightMethod::explicit_third) worst *= overestimate(h);
-    return worst / safety;
+    return worst / light_safety;
   }
 
   template <class Pair, class StageRate>
