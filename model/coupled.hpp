@@ -39,10 +39,12 @@ struct BasicCoupled {
   };
   template <class T>
   Coefficients<Meet<P, T>> coefficients(const T& nu) const {
-    const auto F_v = isotropic_fabric(laws.contacts, laws.g3, nu);
-    return {bulk_modulus(laws.moduli, laws.contacts, nu),
-            F_v,
-            initial_shear_ratio(laws.moduli, F_v),
+    using std::log;
+    const Meet<P, T> e = log(nu / laws.moduli.nu_c);
+    const auto fabric = fabric_with_slope(laws.contacts, laws.g3, nu, e);
+    return {bulk_modulus(laws.moduli, fabric, e),
+            fabric.F_v,
+            initial_shear_ratio(laws.moduli, fabric.F_v),
             saturation(laws.s_max, nu),
             saturation(laws.F_max, nu),
             saturation(laws.beta_F, nu)};

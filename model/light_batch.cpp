@@ -27,8 +27,9 @@ struct LightBatch::Kernel {
     Lanes(where ? value.v : Lanes::load(place).v).store(place);
   }
 
+  bool is_known(std::size_t i, const Lanes& nu) const { return nu == load(known_density, i); }
   Coefficients known(std::size_t i, const Lanes& nu) const {
-    if (nu == load(known_density, i))
+    if (is_known(i, nu))
       return {load(known_B, i),     load(known_F_v, i),   load(known_ratio, i),
               load(known_s_max, i), load(known_F_max, i), load(known_beta_F, i)};
     return form.coefficients(nu);
@@ -72,7 +73,7 @@ struct LightBatch::Kernel {
       store(density, i, may, nu_end);
       store(volume_strain, i, may, load(volume_strain, i) + v);
     }
-    remember(i, may, nu_end, now);
+    if (!rests || !is_known(i, nu_end)) remember(i, may, nu_end, now);
     unsigned taken = 0;
     for (std::size_t lane = 0; lane < Lanes::count; ++lane) taken |= (may[lane] != 0 ? 1U : 0U) << lane;
     return taken;

@@ -28,16 +28,20 @@ struct BasicModuli {
 };
 using Moduli = BasicModuli<double>;
 
-/// Eq. 4.11: B = p0 F_v/(g3 nu_c) [1 - 2 gamma_p e + e (1 - gamma_p e) d ln F_v/de], e = ln(nu/nu_c), with
-/// F_v(nu) from `contacts`. Finite at nu_c; 0 where nu < contacts.nu_c.
+/// Eq. 4.11: B = p0 F_v/(g3 nu_c) [1 - 2 gamma_p e + e (1 - gamma_p e) d ln F_v/de], e = ln(nu/nu_c), from
+/// F_v and its slope for this e.
+template <class P, class T>
+auto bulk_modulus(const BasicModuli<P>& m, const FabricWithSlope<T>& fabric, const T& e) {
+  return m.p0 * fabric.F_v / (m.g3 * m.nu_c) * (1 - 2 * m.gamma_p * e + (1 - m.gamma_p * e) * fabric.e_slope);
+}
+
+/// The same with F_v(nu) from `contacts`. Finite at nu_c; 0 where nu < contacts.nu_c.
 template <class P, class T>
 Meet<P, T> bulk_modulus(const BasicModuli<P>& m, const BasicContactCurve<P>& contacts, const T& nu) {
   using std::log;
   if (nu < contacts.nu_c) return 0.0;
-  const auto e = log(nu / m.nu_c);
-  const auto F_v = isotropic_fabric(contacts, m.g3, nu);
-  return m.p0 * F_v / (m.g3 * m.nu_c) *
-         (1 - 2 * m.gamma_p * e + (1 - m.gamma_p * e) * strain_times_fabric_slope(contacts, nu, e));
+  const Meet<P, T> e = log(nu / m.nu_c);
+  return bulk_modulus(m, fabric_with_slope(contacts, m.g3, nu, e), e);
 }
 
 /// Eq. 4.12: A1 = a_I B F_dev. Its derivative with respect to F_dev is a_I B.

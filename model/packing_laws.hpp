@@ -98,14 +98,32 @@ Meet<P, T> isotropic_fabric(const BasicContactCurve<P>& c, const std::type_ident
   return g3 * nu * coordination(c, nu);
 }
 
-/// e d ln F_v/d ln nu, the product that Eq. 4.11 needs, for e = ln(nu/nu_e). It is finite, namely 0, where
-/// nu, nu_c and nu_e meet and the slope itself is infinite. Needs nu >= nu_c.
+/// Isotropic fabric and the product that Eq. 4.11 needs of its slope.
+template <class T>
+struct FabricWithSlope {
+  T F_v;      ///< g3 nu C
+  T e_slope;  ///< e d ln F_v/d ln nu
+};
+
+/// Both for e = ln(nu/nu_e), with each power and exponential taken once. The product is finite, namely 0,
+/// where nu, nu_c and nu_e meet and the slope itself is infinite. Needs nu >= nu_c.
+template <class P, class T>
+FabricWithSlope<Meet<P, T>> fabric_with_slope(const BasicContactCurve<P>& c,
+                                              const std::type_identity_t<P>& g3, const T& nu,
+                                              const Meet<P, T>& e) {
+  using std::exp, std::pow;
+  const auto x = c.excess(nu);
+  const auto power = pow(x, c.alpha), C_star = c.C0 + c.C1 * power, phi = c.phi_c * exp(-c.phi_v * x);
+  const auto F_v = g3 * nu * (1 - phi) * C_star;
+  if (e == 0) return {F_v, 0.0};
+  // d C*/d nu = C1 alpha x^(alpha - 1)/nu_c, d phi_r/d nu = -phi_v phi_r/nu_c.
+  return {F_v, e * (1 + nu / c.nu_c * (c.C1 * c.alpha * power / (x * C_star) + c.phi_v * phi / (1 - phi)))};
+}
+
+/// The product alone.
 template <class P, class T>
 Meet<P, T> strain_times_fabric_slope(const BasicContactCurve<P>& c, const T& nu, const Meet<P, T>& e) {
-  if (e == 0) return 0.0;
-  const auto phi = rattlers(c, nu);
-  return e * (1 + nu * corrected_coordination_slope(c, nu) / corrected_coordination(c, nu) -
-              nu * rattlers_slope(c, nu) / (1 - phi));
+  return fabric_with_slope(c, P(1.0), nu, e).e_slope;
 }
 
 /// The volume fraction at and below which Eq. 2.14 gives no pressure.
