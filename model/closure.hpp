@@ -61,6 +61,13 @@ BasicLaws<P> laws_of(const ParameterSet& parameters, const Choice& choice, const
 Laws laws_of(const ParameterSet& parameters, const Choice& choice);
 inline Laws laws_of(const ParameterSet& parameters, Form form) { return laws_of(parameters, {form, {}}); }
 
+/// The numbers of Eqs. 5.1 and 5.5 of a set's memory.
+template <class P>
+BasicOverCompression<P> over_compression_of(const MemoryLaws& memory, const Reading<P>& read) {
+  return {read(memory.phi_SJ), read(memory.mu), read(memory.beta), read(memory.alpha_max),
+          read(memory.alpha_phi)};
+}
+
 /// The same laws for another history: phi_J in place of the nu_c of the pressure law, and every other nu_c in
 /// proportion (chapter 5: Eqs. 5.7 to 5.9, 5.12).
 template <class P>

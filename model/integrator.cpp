@@ -17,6 +17,14 @@
 
 namespace grainlaw::model {
 
+std::string name_of(Method method) { return method == Method::bdf ? "bdf" : "adams"; }
+
+Method method_of(const std::string& name) {
+  for (const Method method : {Method::bdf, Method::adams})
+    if (name == name_of(method)) return method;
+  throw Error("", "method", "must be one of bdf, adams, got \"" + name + "\"");
+}
+
 namespace {
 
 /// CVODE bounds the error of each step, and errors add up along a path: it is asked for this part of the
@@ -45,23 +53,41 @@ bool all_finite(const double* x, int count) {
   return std::all_of(x, x + count, [](double v) { return std::isfinite(v); });
 }
 
+/// [i + size k] and CVODES's vector for each k.
+void gather(const N_Vector* from, std::vector<double>& to, int size) {
+  for (std::size_t k = 0; k * static_cast<std::size_t>(size) < to.size(); ++k)
+    std::copy_n(data(from[k]), size, to.data() + k * static_cast<std::size_t>(size));
+}
+void scatter(const double* from, N_Vector* to, std::size_t count, int size) {
+  for (std::size_t k = 0; k < count; ++k)
+    std::copy_n(from + k * static_cast<std::size_t>(size), size, data(to[k]));
+}
+
 }  // namespace
 
 struct Integrator::Handles {
-  Handles(int size_, Tolerance tolerance);
+  Handles(int size_, Tolerance tolerance, Method method, const std::vector<double>& scales);
 
   // What CVODE calls: 0 done, 1 try a smaller step, -1 the system threw.
   static int rate(realtype t, N_Vector y, N_Vector dydt, void* user);
   static int jacobian(realtype t, N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vector, N_Vector,
                       N_Vector);
   static int event(realtype t, N_Vector y, realtype* g, void* user);
+  static int sensitivity_rate(int count, realtype t, N_Vector y, N_Vector, N_Vector* s, N_Vector* dsdt,
+                              void* user, N_Vector, N_Vector);
   static void complain(int, const char*, const char*, char* message, void* user);
   template <class Call>
   int guarded(Call call);
+  int add_sensitivities(std::vector<double> scales);
+  int restart_sensitivities(const double* values);
+  int get_sensitivities(double* values);
 
   int size;
   sundials::Context context;  // first in, last out: everything below belongs to it
   Owned<N_Vector, FreeVector> y;
+  std::vector<Owned<N_Vector, FreeVector>> sensitivities;  // of y to each parameter
+  std::vector<N_Vector> s;                                 // the same, as CVODES takes them
+  std::vector<double> s_values, s_rates;                   // [i + size k]
   Owned<SUNMatrix, FreeMatrix> matrix;
   Owned<SUNLinearSolver, FreeSolver> solver;
   std::unique_ptr<void, FreeMemory> memory;
@@ -103,16 +129,61 @@ int Integrator::Handles::event(realtype t, N_Vector y, realtype* g, void* user) 
   });
 }
 
+int Integrator::Handles::sensitivity_rate(int, realtype t, N_Vector y, N_Vector, N_Vector* s, N_Vector* dsdt,
+                                          void* user, N_Vector, N_Vector) {
+  auto& h = *static_cast<Handles*>(user);
+  return h.guarded([&] {
+    gather(s, h.s_values, h.size);
+    if (!h.system->sensitivity_rate(t, data(y), h.s_values.data(), h.s_rates.data())) return false;
+    scatter(h.s_rates.data(), dsdt, h.s.size(), h.size);
+    return all_finite(h.s_rates.data(), static_cast<int>(h.s_rates.size()));
+  });
+}
+
+int Integrator::Handles::add_sensitivities(std::vector<double> scales) {
+  for (std::size_t k = 0; k < scales.size(); ++k) {
+    sensitivities.emplace_back(N_VNew_Serial(size, context));
+    if (!sensitivities.back()) throw Error("the integrator got no memory");
+    s.push_back(sensitivities.back().get());
+    N_VConst(0.0, s.back());
+  }
+  s_values.resize(scales.size() * static_cast<std::size_t>(size));
+  s_rates.resize(s_values.size());
+  void* m = memory.get();
+  int failed = CVodeSensInit(m, static_cast<int>(s.size()), CV_STAGGERED, sensitivity_rate, s.data());
+  if (failed == 0) failed = CVodeSetSensParams(m, nullptr, scales.data(), nullptr);
+  if (failed == 0) failed = CVodeSensEEtolerances(m);
+  if (failed == 0) failed = CVodeSetSensErrCon(m, SUNTRUE);
+  return failed;
+}
+
+int Integrator::Handles::restart_sensitivities(const double* values) {
+  if (s.empty()) return 0;
+  scatter(values, s.data(), s.size(), size);
+  return CVodeSensReInit(memory.get(), CV_STAGGERED, s.data());
+}
+
+/// Where CVode() last returned.
+int Integrator::Handles::get_sensitivities(double* values) {
+  if (s.empty()) return 0;
+  double at = 0;
+  const int failed = CVodeGetSens(memory.get(), &at, s.data());
+  if (failed != 0) return failed;
+  gather(s.data(), s_values, size);
+  std::copy(s_values.begin(), s_values.end(), values);
+  return 0;
+}
+
 void Integrator::Handles::complain(int, const char*, const char*, char* message, void* user) {
   static_cast<Handles*>(user)->complaint = message;
 }
 
-Integrator::Handles::Handles(int size_, Tolerance tolerance)
+Integrator::Handles::Handles(int size_, Tolerance tolerance, Method method, const std::vector<double>& scales)
     : size(size_),
       y(N_VNew_Serial(size_, context)),
       matrix(SUNDenseMatrix(size_, size_, context)),
       solver(y && matrix ? SUNLinSol_Dense(y.get(), matrix.get(), context) : nullptr),
-      memory(CVodeCreate(CV_BDF, context)) {
+      memory(CVodeCreate(method == Method::bdf ? CV_BDF : CV_ADAMS, context)) {
   if (!y || !matrix || !solver || !memory) throw Error("the integrator got no memory");
   N_VConst(0.0, y.get());
   void* m = memory.get();
@@ -128,6 +199,7 @@ Integrator::Handles::Handles(int size_, Tolerance tolerance)
   if (failed == 0) failed = CVodeSetLSetupFrequency(m, 1);
   if (failed == 0) failed = CVodeSetMaxNumSteps(m, most_steps);
   if (failed == 0) failed = CVodeSetNoInactiveRootWarn(m);
+  if (failed == 0 && !scales.empty()) failed = add_sensitivities(scales);
   if (failed != 0) throw Error("the integrator cannot be set up: " + complaint);
 }
 
@@ -138,16 +210,18 @@ void check(Tolerance tolerance) {
     throw Error("", "atol", "must be > 0, got " + to_text(tolerance.atol));
 }
 
-Integrator::Integrator(int size, Tolerance tolerance) {
+Integrator::Integrator(int size, Tolerance tolerance, Method method, const std::vector<double>& scales) {
   check(tolerance);
-  handles_ = std::make_unique<Handles>(size, tolerance);
+  for (const double scale : scales)
+    if (!(scale > 0 && std::isfinite(scale))) throw Error("", "scales", "must be > 0, got " + to_text(scale));
+  handles_ = std::make_unique<Handles>(size, tolerance, method, scales);
 }
 
 Integrator::~Integrator() = default;
 Integrator::Integrator(Integrator&&) noexcept = default;
 Integrator& Integrator::operator=(Integrator&&) noexcept = default;
 
-Status Integrator::start(const System& system, double t, double end, const double* y) {
+Status Integrator::start(const System& system, double t, double end, const double* y, const double* s) {
   Handles& h = *handles_;
   h.system = &system;
   h.t = t;
@@ -155,20 +229,27 @@ Status Integrator::start(const System& system, double t, double end, const doubl
   std::copy(y, y + h.size, data(h.y.get()));
   void* m = h.memory.get();
   int failed = CVodeReInit(m, t, h.y.get());
+  if (failed == 0) failed = h.restart_sensitivities(s);
   if (failed == 0) failed = CVodeRootInit(m, system.event ? 1 : 0, system.event ? Handles::event : nullptr);
   if (failed == 0) failed = CVodeSetStopTime(m, end);
   if (failed != 0) return {Status::Code::failed, "the integrator cannot start: " + h.complaint};
   return {};
 }
 
-Integrator::Arrival Integrator::advance(double to, double* y) {
+Integrator::Arrival Integrator::advance(double to, double* y, double* s) {
   Handles& h = *handles_;
   // CVODE refuses a first step below the rounding of t; nothing moves over so short a way.
   constexpr double too_close = 1e-13;
   int code = CV_SUCCESS;
-  if (to > h.t + too_close * std::max(1.0, std::abs(to)))
+  bool moved = false;
+  if (to > h.t + too_close * std::max(1.0, std::abs(to))) {
     code = CVode(h.memory.get(), to, h.y.get(), &h.t, CV_NORMAL);
+    moved = true;
+  }
   if (h.thrown) std::rethrow_exception(std::exchange(h.thrown, nullptr));
+  if (code >= 0 && moved) {
+    if (const int failed = h.get_sensitivities(s); failed != 0) code = failed;
+  }
   if (code < 0) return {{Status::Code::failed, "CVODE: " + h.complaint}, h.t, false};
   std::copy_n(data(h.y.get()), h.size, y);
   return {{}, h.t, code == CV_ROOT_RETURN};

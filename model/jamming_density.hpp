@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 #include "grainlaw/model/packing_laws.hpp"
 
@@ -50,19 +51,29 @@ double turning_point(double low, double high, Holds holds) {
 
 /// The range of e = ln(nu/phi_J) over which Eq. 2.14 is inverted, from 0 up: to where P* has its maximum (a
 /// gamma_p > 0 gives it one, beyond e = 1/(2 gamma_p)), at most to 1.
-inline double range_of_inversion(const PressureCurve& law) {
-  const auto rises = [&](double e) { return pressure_slope(law, law.nu_c * std::exp(e)) > 0; };
+template <class P>
+double range_of_inversion(const BasicPressureCurve<P>& law) {
+  const auto rises = [&](double e) { return pressure_slope(law, P(law.nu_c * std::exp(e))) > 0; };
   return rises(1) ? 1 : turning_point(0, 1, rises);
 }
 
 /// The phi_J for which the pressure law gives P* at nu, with_jamming_density() inverted. nu itself for P* =
-/// 0; nothing where P* is more than the law gives in range_of_inversion().
-inline std::optional<double> jamming_density_from_pressure(const PressureCurve& law, double nu, double P) {
-  if (P <= 0) return nu;
-  const auto too_little = [&](double e) { return pressure(law, law.nu_c * std::exp(e)) < P; };
+/// 0; nothing where P* is more than the law gives in range_of_inversion(). A Newton step after the bisection
+/// gives it its slopes.
+template <class P>
+std::optional<P> jamming_density_from_pressure(const BasicPressureCurve<P>& law,
+                                               const std::type_identity_t<P>& nu,
+                                               const std::type_identity_t<P>& pressure_) {
+  using std::exp;
+  if (pressure_ <= 0) return nu;
+  const auto at = [&](const P& e) { return P(law.nu_c * exp(e)); };
+  const auto too_little = [&](double e) { return pressure(law, at(e)) < pressure_; };
   const double range = range_of_inversion(law);
   if (too_little(range)) return std::nullopt;
-  return nu * std::exp(-turning_point(0, range, too_little));
+  P e = turning_point(0, range, too_little);
+  const double slope = value(pressure_slope(law, at(e)));
+  if (slope > 0) e = e - (pressure(law, at(e)) - pressure_) / slope;
+  return nu * exp(-e);
 }
 
 }  // namespace grainlaw::model

@@ -33,20 +33,6 @@ BasicState<T> with_slopes(const State& s) {
            s.direction.eps_dev_0}};
 }
 
-template <class T>
-State without_slopes(const BasicState<T>& s) {
-  return {value(s.nu),
-          value(s.eps_vol),
-          value(s.eps_dev),
-          value(s.P),
-          value(s.sigma_dev),
-          value(s.F_dev),
-          value(s.phi_J),
-          s.jammed,
-          {s.direction.q, value(s.direction.S_I), value(s.direction.S_F_I), value(s.direction.s_0),
-           value(s.direction.F_0), value(s.direction.eps_dev_0)}};
-}
-
 }  // namespace
 
 LightLaw::LightLaw(Law law, Tolerance tolerance, LightMethod method)
@@ -113,7 +99,7 @@ Status LightLaw::update(State& state, double eps_vol, double eps_dev, Tangent& t
     tangent.sigma_dev[i] = moved.sigma_dev.slope[i];
     tangent.F_dev[i] = moved.F_dev.slope[i];
   }
-  state = without_slopes(moved);
+  state = values_of(moved);
   return {};
 }
 

@@ -230,6 +230,32 @@ Json ParameterSet::to_json() const {
   return json;
 }
 
+std::vector<NamedParameter> ParameterSet::named() const {
+  std::vector<NamedParameter> list;
+  const auto add = [&](const std::string& prefix, const auto& group) {
+    for (const auto& key : keys(group))
+      list.push_back({prefix + "." + key.name, &(group.*key.member), key.range});
+  };
+  for (const auto& mode : modes)
+    if (isotropic.contains(mode)) add("isotropic." + mode, isotropic.at(mode));
+  if (shear) {
+    for (const auto& [quantity, member] : quantities)
+      if ((*shear).*member) add(std::string("shear.") + quantity, *((*shear).*member));
+  }
+  if (moduli) add("moduli", *moduli);
+  if (memory) {
+    add("memory", *memory);
+    if (memory->phi_cr) list.push_back({"memory.phi_cr", &*memory->phi_cr, inside(0, 1)});
+  }
+  return list;
+}
+
+Parameter& ParameterSet::parameter(const std::string& key) {
+  for (const NamedParameter& entry : named())
+    if (entry.name == key) return const_cast<Parameter&>(*entry.parameter);  // of this very set
+  throw Error(file, key, "no such parameter in the set");
+}
+
 const PackingLaw& ParameterSet::packing(const std::string& mode, const std::string& why) const {
   const auto row = isotropic.find(mode);
   if (row == isotropic.end()) throw Error(file, "isotropic." + mode, "is missing; " + why + " needs it");

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/material.hpp"
@@ -67,6 +68,14 @@ struct Closure {
   bool contacts_at_moduli_nu_c = false;  ///< contacts_nu_c: "moduli" (true) or "row" (false)
 };
 
+/// A parameter by its place in the file ("moduli.a_I", "isotropic.d2.C1", "shear.s_max.Q_max"), and the
+/// values it may have.
+struct NamedParameter {
+  std::string name;
+  const Parameter* parameter;  ///< of the set that was asked; valid as long as that is
+  Range range;
+};
+
 struct ParameterSet {
   std::string name;
   Material material;
@@ -81,6 +90,11 @@ struct ParameterSet {
   static ParameterSet load(const std::filesystem::path& file);
   static ParameterSet read(Reader reader);
   Json to_json() const;
+
+  /// Every parameter of the set, in the order of the file.
+  std::vector<NamedParameter> named() const;
+  /// The one of that name. Throws Error naming file and key where the set has none.
+  Parameter& parameter(const std::string& key);
 
   /// The row or group asked for. Throws Error naming file, group and why it is needed ("... needs
   /// isotropic.d2").

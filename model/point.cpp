@@ -1,26 +1,13 @@
 #include "grainlaw/model/point.hpp"
 
 #include <cmath>
-#include <type_traits>
 #include <utility>
+
+#include "grainlaw/model/system_of.hpp"
 
 namespace grainlaw::model {
 
 namespace {
-
-template <class Form>
-System system_of(const Form& form, const Stretch& stretch, const Direction& direction) {
-  System system;
-  system.rate = [&](double t, const double* y, double* dydt) {
-    return rate_at(form, stretch, direction, t, y, dydt);
-  };
-  system.jacobian = [&](double t, const double* y, double* J) {
-    return jacobian_of(form, stretch, direction, t, y, J);
-  };
-  if constexpr (std::is_base_of_v<Coupled, Form>)
-    system.event = [](double, const double* y) { return y[0] - smallest_pressure; };
-  return system;
-}
 
 /// The solver of a Walk by CVODE.
 struct ByIntegrator {
@@ -48,11 +35,11 @@ struct ByIntegrator {
 
 }  // namespace
 
-MaterialPoint::MaterialPoint(Law law, const State& start, Tolerance tolerance)
+MaterialPoint::MaterialPoint(Law law, const State& start, Tolerance tolerance, Method method)
     : law_(std::move(law)), state_(start) {
   std::visit(
       [&]<class Form>(const Form&) {
-        if constexpr (Form::size > 0) integrator_.emplace(static_cast<int>(Form::size), tolerance);
+        if constexpr (Form::size > 0) integrator_.emplace(static_cast<int>(Form::size), tolerance, method);
       },
       law_);
 }

@@ -19,7 +19,7 @@ namespace grainlaw::model {
 class MaterialPoint {
  public:
   /// An unjammed start has P = sigma_dev = F_dev = 0.
-  MaterialPoint(Law law, const State& start, Tolerance tolerance);
+  MaterialPoint(Law law, const State& start, Tolerance tolerance, Method method = Method::bdf);
 
   const Law& law() const { return law_; }
   const State& state() const { return state_; }

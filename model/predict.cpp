@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <iterator>
 
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/model/point.hpp"
+#include "grainlaw/model/pressure_drift.hpp"
+#include "grainlaw/model/sensitivities.hpp"
 #include "grainlaw/model/start.hpp"
 
 namespace grainlaw::model {
@@ -53,7 +55,7 @@ void check_samples(const std::vector<Sample>& samples, std::size_t legs) {
 }
 
 /// A row of prediction_columns().
-void append_row(Record& record, const Law& law, const State& state, std::size_t leg) {
+std::vector<double> row_of(const Law& law, const State& state, std::size_t leg) {
   const Contacts contacts = contacts_of(law, state);
   const auto value = [&](std::string_view column) {
     if (column == "segment") return static_cast<double>(leg);
@@ -72,8 +74,15 @@ void append_row(Record& record, const Law& law, const State& state, std::size_t 
     throw Error("the law has no column " + std::string(column));
   };
   std::vector<double> row;
-  for (const auto& column : record.columns()) row.push_back(value(column));
-  record.append(row);
+  for (const auto& column : prediction_columns()) row.push_back(value(column));
+  return row;
+}
+
+/// The slopes of sensitive_columns(), name by name.
+void append_slopes(std::vector<double>& row, const BasicState<Slopes>& state, std::size_t names) {
+  for (std::size_t k = 0; k < names; ++k)
+    for (const Slopes* x : {&state.P, &state.sigma_dev, &state.F_dev, &state.phi_J})
+      row.push_back(x->slope[k]);
 }
 
 std::string where(double nu, double eps_dev) {
@@ -88,61 +97,15 @@ void tell_events(const std::vector<Event>& events, std::vector<std::string>& war
     warnings.push_back("unjams and jams " + std::to_string(events.size() - most_events) + " times more");
 }
 
-/// Where a direction of shear ended.
-struct Turn {
-  double q, eps_dev, P;
-};
-
-/// Change of P per half cycle between two ends of the same direction one cycle apart, as a part of P; 0 where
-/// the cycle is not closed, or no pressure was left. A cycle is compared and not its halves, because within
-/// one P also dips after a reversal and recovers.
-double drift_over_cycle(const Turn& before, const Turn& reversal, const Turn& after) {
-  constexpr double closed = 0.01;  // of the strain of a half cycle
-  const bool returns =
-      std::abs(after.eps_dev - before.eps_dev) <= closed * std::abs(after.eps_dev - reversal.eps_dev);
-  return returns && before.P > 0 && after.P > 0 ? std::sqrt(after.P / before.P) - 1 : 0;
-}
-
-/// The largest drift_over_cycle() in shear at constant volume; `P_at_ends` of the legs that were walked.
-double pressure_drift(const std::vector<Leg>& legs, const std::vector<double>& P_at_ends) {
-  constexpr double constant_volume = 1e-9;  // of the shear strain
-  double largest = 0;
-  std::vector<Turn> turns;  // since the volume last changed
-  for (std::size_t i = 0; i < P_at_ends.size(); ++i) {
-    const double volume = legs[i].eps_vol[1] - legs[i].eps_vol[0],
-                 shear = legs[i].eps_dev[1] - legs[i].eps_dev[0], q = shear > 0 ? 1 : -1;
-    if (std::abs(volume) > constant_volume * std::abs(shear)) {
-      turns.clear();
-    } else if (shear != 0) {
-      if (!turns.empty() && turns.back().q == q) turns.pop_back();
-      turns.push_back({q, legs[i].eps_dev[1], P_at_ends[i]});
-    }
-    if (turns.size() < 3) continue;
-    const double drift = drift_over_cycle(turns.end()[-3], turns.end()[-2], turns.back());
-    if (std::abs(drift) > std::abs(largest)) largest = drift;
-  }
-  return largest;
-}
-
-/// Eq. 4.16 has no restoring term in dP*: cycles of shear pump pressure.
-void tell_drift(double drift, std::vector<std::string>& warnings) {
-  constexpr double tolerated = 0.01;
-  if (std::abs(drift) <= tolerated) return;
-  char percent[32];
-  std::snprintf(percent, sizeof percent, "%.1f", 100 * std::abs(drift));
-  warnings.push_back(std::string(drift > 0 ? "gains" : "loses") + " up to " + percent +
-                     " % of P per half cycle of shear at constant volume, without a bound: Eq. 4.16 has no "
-                     "restoring term in dP");
-}
-
 struct Walked {
   Status status;
   std::vector<double> P_at_ends;  // of the legs, up to a failure
 };
 
-/// Walks the legs and appends a row per sample.
-Walked walk_legs(MaterialPoint& point, const Path& path, const std::vector<Leg>& legs,
-                 const std::vector<Sample>& samples, Record& record) {
+/// Walks the legs, with `visit(leg, state)` at every sample.
+template <class Point, class Visit>
+Walked walk_legs(Point& point, const Path& path, const std::vector<Leg>& legs,
+                 const std::vector<Sample>& samples, Visit visit) {
   Walked walked;
   auto next = samples.begin();
   std::vector<double> fractions;
@@ -151,20 +114,46 @@ Walked walk_legs(MaterialPoint& point, const Path& path, const std::vector<Leg>&
     fractions.clear();
     for (; next != samples.end() && next->leg == i; ++next) fractions.push_back(next->progress);
     if (leg.mode == Mode::relax) point.relax();
-    walked.status =
-        point.walk(leg.eps_vol[1] - leg.eps_vol[0], leg.eps_dev[1] - leg.eps_dev[0], fractions,
-                   [&](std::size_t, const State& state) { append_row(record, point.law(), state, i); });
+    walked.status = point.walk(leg.eps_vol[1] - leg.eps_vol[0], leg.eps_dev[1] - leg.eps_dev[0], fractions,
+                               [&](std::size_t, const auto& state) { visit(i, state); });
     if (walked.status.failed()) {
       walked.status.message = path.segments[i].key + ": " + walked.status.message;
       return walked;
     }
-    walked.P_at_ends.push_back(point.state().P);
+    walked.P_at_ends.push_back(value(point.state().P));
   }
-  const State& end = point.state();
+  const State end = values_of(point.state());
   if (!end.jammed)
     walked.status = {Status::Code::unjammed,
                      "carries no stress at the end: unjammed " + where(end.nu, end.eps_dev)};
   return walked;
+}
+
+void conclude(Prediction& prediction, const std::vector<Leg>& legs, const Walked& walked,
+              const std::vector<Event>& events) {
+  prediction.status = walked.status;
+  tell_events(events, prediction.warnings);
+  tell_drift(pressure_drift(legs, walked.P_at_ends), prediction.warnings);
+}
+
+std::vector<Sample> even_samples_of(const ParameterSet& parameters, const Path& path,
+                                    const PredictOptions& options) {
+  if (options.rows_per_leg < 1)
+    throw Error("", "rows_per_leg", "must be >= 1, got " + std::to_string(options.rows_per_leg));
+  const StartState start = start_of(parameters, path, {options.form, options.terms});
+  return even_samples(path.legs(start.state.nu), options.rows_per_leg);
+}
+
+std::vector<std::string> idle_names(const Record& record, const std::vector<std::string>& names) {
+  const auto idle = [&](const std::string& name) {
+    return std::all_of(sensitive_columns().begin(), sensitive_columns().end(), [&](const auto& column) {
+      const auto& slopes = record[sensitivity_column(column, name)];
+      return std::all_of(slopes.begin(), slopes.end(), [](double x) { return x == 0; });
+    });
+  };
+  std::vector<std::string> result;
+  std::copy_if(names.begin(), names.end(), std::back_inserter(result), idle);
+  return result;
 }
 
 }  // namespace
@@ -176,19 +165,53 @@ Prediction predict(const ParameterSet& parameters, const Path& path, const std::
   check_axes(path, legs);
   check_samples(samples, legs.size());
   Prediction prediction{Record(prediction_columns()), start.echo, start.warnings, {}};
-  MaterialPoint point(start.law, start.state, {options.rtol, options.atol});
-  const Walked walked = walk_legs(point, path, legs, samples, prediction.record);
-  prediction.status = walked.status;
-  tell_events(point.events(), prediction.warnings);
-  tell_drift(pressure_drift(legs, walked.P_at_ends), prediction.warnings);
+  MaterialPoint point(start.law, start.state, {options.rtol, options.atol}, options.method);
+  const Walked walked = walk_legs(point, path, legs, samples, [&](std::size_t leg, const State& state) {
+    prediction.record.append(row_of(point.law(), state, leg));
+  });
+  conclude(prediction, legs, walked, point.events());
   return prediction;
 }
 
 Prediction predict(const ParameterSet& parameters, const Path& path, const PredictOptions& options) {
-  if (options.rows_per_leg < 1)
-    throw Error("", "rows_per_leg", "must be >= 1, got " + std::to_string(options.rows_per_leg));
+  return predict(parameters, path, even_samples_of(parameters, path, options), options);
+}
+
+SensitivePrediction predict_sensitivities(const ParameterSet& parameters, const Path& path,
+                                          const std::vector<Sample>& samples,
+                                          const std::vector<std::string>& names,
+                                          const PredictOptions& options) {
+  const Seeds seeds(parameters, path, names);
   const StartState start = start_of(parameters, path, {options.form, options.terms});
-  return predict(parameters, path, even_samples(path.legs(start.state.nu), options.rows_per_leg), options);
+  const auto slopes = seeds.start(parameters, path, {options.form, options.terms});
+  const std::vector<Leg> legs = path.legs(start.state.nu);
+  check_axes(path, legs);
+  check_samples(samples, legs.size());
+  std::vector<std::string> columns = prediction_columns();
+  for (const std::string& name : names)
+    for (const std::string& column : sensitive_columns()) columns.push_back(sensitivity_column(column, name));
+  SensitivePrediction result{{Record(columns), start.echo, start.warnings, {}}, {}, {}};
+  SensitivePoint point(start.law, slopes.law, slopes.state, {options.rtol, options.atol}, seeds.scales(),
+                       options.method);
+  const auto append = [&](std::size_t leg, const BasicState<Slopes>& state) {
+    std::vector<double> row = row_of(point.law(), values_of(state), leg);
+    append_slopes(row, state, names.size());
+    result.prediction.record.append(row);
+  };
+  const Walked walked = walk_legs(point, path, legs, samples, append);
+  result.events = point.events();
+  std::vector<Event> events;
+  for (const SensitiveEvent& e : result.events)
+    events.push_back({e.jammed, e.nu.value, e.eps_vol.value, e.eps_dev.value});
+  conclude(result.prediction, legs, walked, events);
+  result.idle = idle_names(result.prediction.record, names);
+  return result;
+}
+
+SensitivePrediction predict_sensitivities(const ParameterSet& parameters, const Path& path,
+                                          const std::vector<std::string>& names,
+                                          const PredictOptions& options) {
+  return predict_sensitivities(parameters, path, even_samples_of(parameters, path, options), names, options);
 }
 
 std::vector<Sample> samples_of(const Record& record, const Path& path, double nu_start) {

@@ -9,6 +9,7 @@
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/element/record.hpp"
+#include "grainlaw/model/integrator.hpp"
 #include "grainlaw/model/law.hpp"
 #include "grainlaw/model/parameters.hpp"
 #include "grainlaw/model/status.hpp"
@@ -21,6 +22,7 @@ struct PredictOptions {
   double atol = 1e-12;     ///< absolute error of P*, sigma*_dev, F_dev, s_dev, > 0
   int rows_per_leg = 100;  ///< evenly spaced in the leg's strain; a relaxation has one row, its end
   Terms terms = {};        ///< past the thesis
+  Method method = Method::bdf;
 };
 
 /// A point of the path: leg (segment) and the fraction of its strain that is done.

@@ -2,6 +2,7 @@
 // value is from.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,18 @@
 
 namespace grainlaw::model {
 
-struct StartState {
-  Law law;  ///< at the jamming density of this start
-  State state;
+template <class T>
+struct BasicStartState {
+  BasicLaw<T> law;  ///< at the jamming density of this start
+  BasicState<T> state;
   Json echo;  ///< {"nu": {"value": 0.711, "from": "given"}, ...} for nu, P, sigma_dev, F_dev, phi_J
   std::vector<std::string> warnings;
 };
+using StartState = BasicStartState<double>;
+
+/// A value that the path gives ("nu", "P", ...) as a number of type T.
+template <class T>
+using StartReading = std::function<T(const char* key, double value)>;
 
 /// Fills in `path.start`. Throws Error naming file and key for values that are missing or contradict one
 /// another.
@@ -25,5 +32,10 @@ StartState start_of(const ParameterSet& parameters, const Path& path, const Choi
 inline StartState start_of(const ParameterSet& parameters, const Path& path, Form form) {
   return start_of(parameters, path, {form, {}});
 }
+
+/// The same for numbers that `read` and `given` make; instantiated for double and Slopes.
+template <class T>
+BasicStartState<T> start_of(const ParameterSet& parameters, const Path& path, const Choice& choice,
+                            const Reading<T>& read, const StartReading<T>& given);
 
 }  // namespace grainlaw::model

@@ -79,6 +79,22 @@ struct BasicState {
 };
 using State = BasicState<double>;
 
+/// The same without derivatives.
+template <class T>
+Stretch values_of(const BasicStretch<T>& s) {
+  return {value(s.nu_0), value(s.eps_vol), value(s.eps_dev)};
+}
+template <class T>
+Direction values_of(const BasicDirection<T>& d) {
+  return {d.q, value(d.S_I), value(d.S_F_I), value(d.s_0), value(d.F_0), value(d.eps_dev_0)};
+}
+template <class T>
+State values_of(const BasicState<T>& s) {
+  return {value(s.nu),    value(s.eps_vol),   value(s.eps_dev),
+          value(s.P),     value(s.sigma_dev), value(s.F_dev),
+          value(s.phi_J), s.jammed,           values_of(s.direction)};
+}
+
 /// |1 - q x/x_sat|, the scale of S and S_F in a direction. At saturation there is no elastic part: plastic
 /// from the start. The floor keeps that limit finite; an elastic part this short (in strain, it over beta) is
 /// none.

@@ -56,6 +56,30 @@ TEST_F(Predict, FormsDiffer) {
   EXPECT_LT(coupled["s_dev"][10], 0.99 * reduced["s_dev"][10]);  // 4.16 rises more slowly
 }
 
+TEST_F(Predict, WritesSensitivities) {
+  const Record record = predict({"--sensitivities", "moduli.a_I,memory.mu"});
+  EXPECT_EQ(record.columns().size(), prediction_columns().size() + 8);
+  EXPECT_NE(record["dP/d(moduli.a_I)"][50], 0);
+  EXPECT_EQ(record["dF_dev/d(memory.mu)"][50], 0);
+  EXPECT_THAT(last.err, HasSubstr("nothing on this path depends on memory.mu"));
+  const Record si = predict({"--sensitivities", "moduli.a_I,memory.mu", "--si"});
+  EXPECT_NEAR(si["dP_kPa/d(moduli.a_I)"][50], 5e7 * record["dP/d(moduli.a_I)"][50], 1);
+  const Record all = predict({"--sensitivities", "all", "--rows", "3"});
+  EXPECT_TRUE(all.has("dsigma_dev/d(start.nu)"));
+  EXPECT_TRUE(all.has("dP/d(isotropic.iso.p0)"));
+  EXPECT_FALSE(all.has("dP/d(isotropic.uni.p0)"));
+  const Outcome refused = run({"predict", "data/thesis/parameters.json", "data/paths/d2-cycle.json",
+                               "--sensitivities", "moduli.a_III"});
+  EXPECT_NE(refused.status, 0);
+  EXPECT_THAT(refused.err, HasSubstr("moduli.a_III: no such parameter"));
+}
+
+TEST_F(Predict, BothFamiliesOfFormulasAgree) {
+  const Record bdf = predict({}), adams = predict({"--method", "adams"});
+  for (std::size_t i = 0; i < bdf.rows(); ++i) EXPECT_NEAR(adams["P"][i], bdf["P"][i], 1e-8 * bdf["P"][i]);
+  EXPECT_NE(adams["P"], bdf["P"]);
+}
+
 TEST_F(Predict, ToleranceIsObeyed) {
   const Record fine = predict({"--rtol", "1e-11"}), coarse = predict({"--rtol", "1e-3"});
   double largest = 0;

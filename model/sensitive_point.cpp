@@ -1,0 +1,163 @@
+#include "grainlaw/model/sensitive_point.hpp"
+
+#include <array>
+#include <utility>
+
+#include "grainlaw/model/system_of.hpp"
+#include "grainlaw/model/walk.hpp"
+
+namespace grainlaw::model {
+
+namespace {
+
+using SlopesState = BasicState<Slopes>;
+using SlopesStretch = BasicStretch<Slopes>;
+
+/// Variables of an integration: values and slopes apart, as the integrator takes them.
+template <std::size_t size>
+struct Variables {
+  std::array<double, size> y;
+  std::vector<double> s;  // [i + size k]
+
+  Variables(const std::array<Slopes, size>& from, std::size_t count) : s(size * count) {
+    for (std::size_t i = 0; i < size; ++i) y[i] = from[i].value;
+    split(from.data(), s.data(), count);
+  }
+  static void split(const Slopes* from, double* to, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t i = 0; i < size; ++i) to[i + size * k] = from[i].slope[k];
+  }
+  static std::array<Slopes, size> joined(const double* y, const double* s, std::size_t count) {
+    std::array<Slopes, size> out;
+    for (std::size_t i = 0; i < size; ++i) {
+      out[i].value = y[i];
+      for (std::size_t k = 0; k < count; ++k) out[i].slope[k] = s[i + size * k];
+    }
+    return out;
+  }
+};
+
+/// From y at the number `from` to y at t, the same number with slopes.
+template <class Rates, std::size_t size>
+bool move_to(const Rates& rates, const Slopes& t, double from, std::array<Slopes, size>& y) {
+  std::array<Slopes, size> dydt;
+  if (!rates(from, y, dydt)) return false;
+  for (std::size_t i = 0; i < size; ++i) y[i] = y[i] + dydt[i] * (t - from);
+  return true;
+}
+
+/// From a state whose P* (y[0]) is about `pressure` to where it is exactly that, in value and slopes. The
+/// step is taken in P*, by the midpoint rule (Henon): in t the rates may become infinite as P* vanishes.
+template <class Rates, std::size_t size>
+bool move_to_pressure(const Rates& rates, double pressure, Slopes& t, std::array<Slopes, size>& y) {
+  const Slopes way = pressure - y[0], start = t;
+  const std::array<Slopes, size> begin = y;
+  for (const double part : {0.5, 1.0}) {
+    std::array<Slopes, size> dydt;
+    if (!rates(t, y, dydt)) return false;
+    const Slopes step = part * way / dydt[0];
+    t = start + step;
+    for (std::size_t i = 0; i < size; ++i) y[i] = begin[i] + dydt[i] * step;
+  }
+  return true;
+}
+
+/// CVODES: the values by `plain`, and d/dt of the slopes, J s_k + d rate/dp_k, from one evaluation of the
+/// rate with numbers that carry them.
+template <class Plain>
+struct BySensitiveIntegrator {
+  const Plain& plain;
+  Integrator& integrator;
+  std::size_t count;
+
+  template <class Form, class NextSample, class Visit>
+  Reached<Slopes> operator()(const Form& form, SlopesState& state, const SlopesStretch& stretch,
+                             NextSample next_sample, Visit visit) const {
+    constexpr std::size_t size = Form::size;
+    using Both = Variables<size>;
+    const SlopesState begin = state;
+    const Stretch values = values_of(stretch);
+    const Direction direction = values_of(begin.direction);
+    System system = system_of(plain, values, direction);
+    using Numbers = std::array<Slopes, size>;
+    const auto rates = [&](const Slopes& t, const Numbers& y, Numbers& dydt) {
+      return rate_at(form, stretch, begin.direction, t, y.data(), dydt.data());
+    };
+    system.sensitivity_rate = [&](double t, const double* y, const double* s, double* dsdt) {
+      Numbers dydt;
+      if (!rates(t, Both::joined(y, s, count), dydt)) return false;
+      Both::split(dydt.data(), dsdt, count);
+      return true;
+    };
+    Both at(form.variables(begin), count);
+    if (Status status = integrator.start(system, 0, 1, at.y.data(), at.s.data()); status.failed())
+      return {status, 0.0};
+    for (bool last = false; !last;) {
+      Slopes t = next_sample();
+      last = !(t <= 1);
+      if (last) t = 1.0;
+      const auto arrival = integrator.advance(t.value, at.y.data(), at.s.data());
+      if (arrival.status.failed()) return {arrival.status, arrival.t};
+      // Where a sample or an event lies depends on the variables too.
+      Numbers y = Both::joined(at.y.data(), at.s.data(), count);
+      bool defined = true;
+      if (arrival.event)
+        defined = move_to_pressure(rates, smallest_pressure, t = arrival.t, y);
+      else if (t.slope != Slopes().slope)
+        defined = move_to(rates, t, arrival.t, y);
+      if (!defined)
+        return {{Status::Code::failed, "the law is not defined where it is to be differentiated"}, arrival.t};
+      state = form.state(begin, stretch, t, y.data());
+      if (arrival.event) return {{}, t, true};
+      if (!last) visit(state);
+    }
+    return {};
+  }
+};
+
+}  // namespace
+
+SensitivePoint::SensitivePoint(Law law, BasicLaw<Slopes> slopes_law, const BasicState<Slopes>& start,
+                               Tolerance tolerance, const std::vector<double>& scales, Method method)
+    : law_(std::move(law)), slopes_law_(std::move(slopes_law)), state_(start), count_(scales.size()) {
+  std::visit(
+      [&]<class Form>(const Form&) {
+        if constexpr (Form::size > 0)
+          integrator_.emplace(static_cast<int>(Form::size), tolerance, method, scales);
+      },
+      law_);
+}
+
+Status SensitivePoint::walk(double eps_vol, double eps_dev, std::span<const double> samples,
+                            const Visit& visit) {
+  if (eps_vol == 0 && eps_dev == 0) {
+    for (std::size_t i = 0; i < samples.size(); ++i) visit(i, state_);
+    return {};
+  }
+  const SlopesStretch whole{state_.nu, eps_vol, eps_dev};
+  if (auto reason = objection(law_, values_of(whole))) return {Status::Code::failed, *reason};
+  const SlopesState before = state_;
+  const std::size_t events_before = events_.size();
+  const auto note = [&](bool jammed, const SlopesState& state) {
+    events_.push_back({jammed, state.nu, state.eps_vol, state.eps_dev});
+  };
+  const auto along = [&](const auto& form, auto solver) {
+    return Walk(form, state_, Course<Slopes>(whole, samples), solver, visit, note).run();
+  };
+  Status status = std::visit(
+      [&]<template <class> class Form>(const Form<Slopes>& form) {
+        if constexpr (Form<Slopes>::size == 0)
+          return along(form, Closed{});
+        else
+          return along(
+              form, BySensitiveIntegrator<Form<double>>{std::get<Form<double>>(law_), *integrator_, count_});
+      },
+      slopes_law_);
+  if (!status.failed()) return status;
+  status.message += " (nu = " + shown(state_.nu.value) + ", eps_dev = " + shown(state_.eps_dev.value) + ")";
+  state_ = before;
+  events_.resize(events_before);
+  return status;
+}
+
+}  // namespace grainlaw::model
