@@ -10,14 +10,9 @@ namespace grainlaw::model {
 
 namespace {
 
-Status failure(const State& state, const Status& status) {
-  return {Status::Code::failed,
-          status.message + " (nu = " + shown(state.nu) + ", eps_dev = " + shown(state.eps_dev) + ")"};
-}
-
 /// The solver of one piece without samples.
 constexpr auto no_sample = [] { return 2.0; };
-constexpr auto no_visit = [](const auto&) {};
+constexpr auto no_visit = [](const auto&...) {};
 
 template <class T>
 BasicState<T> with_slopes(const State& s) {
@@ -55,16 +50,23 @@ bool LightLaw::quick(State& state, const Stretch& stretch, LightCache* cache) co
   return false;
 }
 
-template <class T>
-Status LightLaw::walk(BasicState<T>& state, const BasicStretch<T>& stretch) const {
-  return std::visit(
+template <class T, class Visitor>
+Status LightLaw::walk_along(BasicState<T>& state, const BasicStretch<T>& stretch,
+                            std::span<const double> samples, const Visitor& visit) const {
+  if (Status status = admits(values_of(stretch)); status.failed()) return status;
+  BasicState<T> moved = state;
+  Status status = std::visit(
       [&](const auto& form) {
-        return Walk(
-                   form, state, Course<T>(stretch, {}), light_, [](std::size_t, const BasicState<T>&) {},
-                   [](bool, const BasicState<T>&) {})
+        return Walk(form, moved, Course<T>(stretch, samples), light_, visit,
+                    [](bool, const BasicState<T>&) {})
             .run();
       },
       law_);
+  if (status.failed())
+    return {status.code, status.message + " (nu = " + shown(value(moved.nu)) +
+                             ", eps_dev = " + shown(value(moved.eps_dev)) + ")"};
+  state = moved;
+  return {};
 }
 
 Status LightLaw::admits(const Stretch& stretch) const {
@@ -79,19 +81,23 @@ Status LightLaw::update(State& state, double eps_vol, double eps_dev, LightCache
   const Stretch stretch{state.nu, eps_vol, eps_dev};
   if (quick(state, stretch, cache)) return {};
   if (eps_vol == 0 && eps_dev == 0) return {};
-  if (Status status = admits(stretch); status.failed()) return status;
-  State moved = state;
-  if (Status status = walk(moved, stretch); status.failed()) return failure(state, status);
-  state = moved;
-  return {};
+  return walk_along(state, stretch, {}, no_visit);
+}
+
+Status LightLaw::walk(State& state, double eps_vol, double eps_dev, std::span<const double> samples,
+                      const Visit& visit) const {
+  if (eps_vol == 0 && eps_dev == 0) {
+    for (std::size_t i = 0; i < samples.size(); ++i) visit(i, state);
+    return {};
+  }
+  return walk_along(state, Stretch{state.nu, eps_vol, eps_dev}, samples, visit);
 }
 
 Status LightLaw::update(State& state, double eps_vol, double eps_dev, Tangent& tangent) const {
   using T = Dual<2>;
-  if (Status status = admits({state.nu, eps_vol, eps_dev}); status.failed()) return status;
   auto moved = with_slopes<T>(state);
   const BasicStretch<T> stretch{state.nu, T(eps_vol, 0), T(eps_dev, 1)};
-  if (Status status = walk(moved, stretch); status.failed()) return failure(state, status);
+  if (Status status = walk_along(moved, stretch, {}, no_visit); status.failed()) return status;
   // At rest the tangent is that of the next, elastic, increment; nothing is forgotten.
   if (eps_vol == 0 && eps_dev == 0) moved.direction = with_slopes<T>(state).direction;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -3,7 +3,9 @@
 // threads.
 #pragma once
 
-#include <optional>
+#include <cstddef>
+#include <functional>
+#include <span>
 
 #include "grainlaw/model/law.hpp"
 #include "grainlaw/model/light.hpp"
@@ -39,9 +41,16 @@ class LightLaw {
   /// The same with the tangent.
   Status update(State& state, double eps_vol, double eps_dev, Tangent& tangent) const;
 
+  /// As MaterialPoint::walk: a long stretch in steps of the light path's own, with the states at the
+  /// fractions `samples` (ascending, in [0, 1]) on the way.
+  using Visit = std::function<void(std::size_t, const State&)>;
+  Status walk(State& state, double eps_vol, double eps_dev, std::span<const double> samples,
+              const Visit& visit) const;
+
  private:
-  template <class T>
-  Status walk(BasicState<T>& state, const BasicStretch<T>& stretch) const;
+  template <class T, class Visitor>
+  Status walk_along(BasicState<T>& state, const BasicStretch<T>& stretch, std::span<const double> samples,
+                    const Visitor& visit) const;
   bool quick(State& state, const Stretch& stretch, LightCache* cache) const;
   Status admits(const Stretch& stretch) const;
 

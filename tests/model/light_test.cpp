@@ -156,6 +156,32 @@ TEST(Light, SmallIncrementsAgreeWithLargeOnes) {
   }
 }
 
+TEST(Light, SamplesOfALongStretchAreThoseOfCvode) {
+  for (const Form form : forms) {
+    const Law law = make_law(thesis(), form);
+    const LightLaw light(law, {1e-8, 1e-11});
+    State state = start_at(law, 0.7);
+    MaterialPoint point(law, state, {1e-11, 1e-14});
+    std::vector<double> fractions;
+    for (int i = 0; i <= 50; ++i) fractions.push_back(i / 50.0);
+    for (const auto& [v, e] : eventful) {
+      std::vector<State> expected;
+      ASSERT_FALSE(
+          point.walk(v, e, fractions, [&](std::size_t, const State& s) { expected.push_back(s); }).failed());
+      ASSERT_FALSE(light
+                       .walk(state, v, e, fractions,
+                             [&](std::size_t i, const State& s) {
+                               EXPECT_NEAR(s.P, expected.at(i).P, 1e-8);
+                               EXPECT_NEAR(s.sigma_dev, expected.at(i).sigma_dev, 1e-8);
+                               EXPECT_NEAR(s.F_dev, expected.at(i).F_dev, 1e-7);
+                               EXPECT_NEAR(s.nu, expected.at(i).nu, 1e-13);
+                             })
+                       .failed());
+      EXPECT_NEAR(state.P, point.state().P, 1e-8);
+    }
+  }
+}
+
 TEST(Light, ACacheChangesNothing) {
   const LightLaw light(make_law(thesis(), Form::coupled), {1e-8, 1e-11});
   State with = start_at(light.law(), 0.7), without = with;
