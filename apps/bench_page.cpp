@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "grainlaw/apps/bench_legend.hpp"
 #include "grainlaw/apps/report/figure.hpp"
-#include "grainlaw/apps/report/gnuplot.hpp"
 #include "grainlaw/apps/report/numbers.hpp"
 #include "grainlaw/apps/report/sections.hpp"
 #include "grainlaw/apps/report/style.hpp"
@@ -20,8 +20,6 @@ using namespace report;
 using calibrate::BenchError;
 using calibrate::BenchTest;
 using calibrate::Knob;
-
-constexpr double legend_height = 28;
 
 std::string label_of(Knob knob) {
   switch (knob) {
@@ -129,27 +127,6 @@ Markup table_of(const std::vector<BenchError>& errors) {
   return table.html();
 }
 
-/// The legend of the picture, in one line above the panels.
-std::string svg_legend(const Figure& figure) {
-  std::string entries;
-  std::vector<std::string> seen;
-  double at = 72;
-  for (const Panel& panel : figure.panels)
-    for (const Series& series : panel.series) {
-      if (series.draw != Draw::dots || series.x.empty()) continue;
-      if (std::find(seen.begin(), seen.end(), series.label) != seen.end()) continue;
-      seen.push_back(series.label);
-      entries += "<circle cx=\"" + number(at, 6) + "\" cy=\"14\" r=\"4\" fill=\"" + series.colour +
-                 "\"/><text x=\"" + number(at + 10, 6) +
-                 "\" y=\"18\" font-family=\"sans-serif\" font-size=\"13\">" + text(series.label).str() +
-                 "</text>\n";
-      at += 40 + 7.5 * static_cast<double>(series.label.size());
-    }
-  return entries + "<text x=\"" + number(at, 6) +
-         "\" y=\"18\" font-family=\"sans-serif\" font-size=\"13\" fill=\"#555\">dashed: chance "
-         "alone</text>\n";
-}
-
 }  // namespace
 
 std::string bench_page(const calibrate::Bench& bench, const std::vector<BenchError>& errors,
@@ -166,12 +143,7 @@ std::string bench_page(const calibrate::Bench& bench, const std::vector<BenchErr
 }
 
 std::string bench_picture(const calibrate::Bench& bench, const std::vector<BenchError>& errors) {
-  Figure figure = figure_of(bench, errors);
-  figure.height += legend_height;
-  for (Panel& panel : figure.panels) panel.area.top += legend_height;
-  std::string svg = run_gnuplot(script(figure));
-  const auto end = svg.rfind("</svg>");
-  return end == std::string::npos ? svg : svg.insert(end, svg_legend(figure));
+  return drawn_with_legend(figure_of(bench, errors), "dashed: chance alone");
 }
 
 }  // namespace grainlaw::apps

@@ -17,8 +17,8 @@
 #include "grainlaw/dem/neighbours.hpp"
 #include "grainlaw/dem/shares.hpp"
 #include "grainlaw/dem/state.hpp"
-#include "grainlaw/dem/thread_pool.hpp"
 #include "grainlaw/element/material.hpp"
+#include "grainlaw/element/thread_pool.hpp"
 
 namespace grainlaw::dem {
 

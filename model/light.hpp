@@ -22,6 +22,11 @@ namespace grainlaw::model {
 /// Errors of steps add up along a path, P* forgets none: each is held to this part of the tolerance.
 inline constexpr double light_safety = 0.002;
 
+/// The same of the pair 3(2). Its third order goes on while the second is estimated, z^3/12 with z
+/// relaxations in the step, so that what errs, z^4/24, adds up in proportion to the strain and to the
+/// tolerance.
+inline constexpr double light_safety_third = 0.016;
+
 /// Which method a light step takes.
 enum class LightMethod {
   automatic,       ///< the cheapest that the stretch allows
@@ -130,23 +135,23 @@ class LightRun {
       case LightMethod::rosenbrock:
         return Rodas::order;
       default:
-        return BogackiShampine::order + 1;
+        return BogackiShampine::order;
     }
   }
-  /// The third order goes on, the second estimates its error: by about a quarter of the relaxations in the
-  /// step too much, where these are what changes.
-  double overestimate(double h) const { return std::min(1.0, rate_.relaxations(y_.data()) * h / 4); }
-  double target() const { return light_safety * tolerance_.rtol; }
+  static double safety(LightMethod method) {
+    return method == LightMethod::explicit_third ? light_safety_third : light_safety;
+  }
 
   LightMethod choose(double h) const {
     const double all = rate_.relaxations(y_.data());
     if (!(all * (1 - t_) < stiff)) return LightMethod::rosenbrock;
-    const double z = all * h;  // the second order errs by about z^3/12
-    return z * z * z * z < 12 * target() ? LightMethod::explicit_third : LightMethod::explicit_fifth;
+    const double z = all * h;
+    return z * z * z < 12 * light_safety_third * tolerance_.rtol ? LightMethod::explicit_third
+                                                                 : LightMethod::explicit_fifth;
   }
   double first_step(double left) const {
     const double lambda = rate_.relaxations(y_.data());
-    return lambda > 0 ? std::min(left, 2 * std::pow(target(), 1. / 6) / lambda) : left;
+    return lambda > 0 ? std::min(left, 2 * std::pow(light_safety * tolerance_.rtol, 1. / 6) / lambda) : left;
   }
 
   /// The error over what is allowed; nothing where a stage is not defined.
@@ -171,8 +176,7 @@ class LightRun {
       if (!std::isfinite(error) || !std::isfinite(value(trial.y[i]))) return std::nullopt;
       worst = std::max(worst, error);
     }
-    if (method == LightMethod::explicit_third) worst *= overestimate(h);
-    return worst / light_safety;
+    return worst / safety(method);
   }
 
   template <class Pair, class StageRate>

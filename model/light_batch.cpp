@@ -4,7 +4,6 @@
 #include <array>
 #include <limits>
 #include <string>
-#include <thread>
 
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/model/lanes.hpp"
@@ -64,7 +63,7 @@ struct LightBatch::Kernel {
     };
     if (!form.rate(start, stretch, shear, y.data(), k[0].data())) return 0;
     if (!trial_step<BogackiShampine>(rate, y, 1, k, trial)) return 0;
-    may &= accepted(stretch, shear, start, y, trial);
+    may &= accepted(start, y, trial);
     store(pressure, i, may, trial.y[0]);
     store(stress, i, may, trial.y[1]);
     store(fabric, i, may, trial.y[2]);
@@ -80,19 +79,12 @@ struct LightBatch::Kernel {
   }
 
   /// Where the estimate of the error keeps the tolerance, and the pressure is far from its end.
-  Mask accepted(const BasicStretch<Lanes>& stretch, const BasicDirection<Lanes>& shear, const Coefficients& c,
-                const std::array<Lanes, 3>& y, const Trial<Lanes, 3>& trial) const {
+  Mask accepted(const Coefficients& c, const std::array<Lanes, 3>& y, const Trial<Lanes, 3>& trial) const {
     const auto part = [&](std::size_t j, const Lanes& scale) {
       return abs(trial.error[j]) / (tolerance.rtol * larger(scale, abs(y[j])) + tolerance.atol);
     };
     const Lanes error = larger(part(0, y[0]), larger(part(1, c.s_max * y[0]), part(2, c.F_max)));
-    const Lanes G = shear_modulus(form.laws.moduli, c.B, c.ratio_ini, y[1], y[2]);
-    Lanes relaxations =
-        abs(stretch.eps_dev) * larger(abs(G) / (y[0] * c.s_max * shear.S_I), c.beta_F / shear.S_F_I);
-    if (!vanishes(stretch.eps_vol))
-      relaxations = relaxations + abs(stretch.eps_vol) / abs(log(stretch.nu_0 / unjamming));
-    const Lanes overestimate = Lanes(relaxations.v < 4 ? relaxations.v / 4 : Lanes(1.0).v);
-    return ((error * overestimate).v <= light_safety) & (trial.y[0].v > 0.5 * y[0].v);
+    return (error.v <= light_safety_third) & (trial.y[0].v > 0.5 * y[0].v);
   }
 
   /// Steps over whole blocks from `first` to `last`; calls `left(i)` for each point that has not taken its
@@ -138,18 +130,44 @@ GRAINLAW_KERNEL(run_avx512, , target("avx512f,avx512dq,avx512vl,avx2,fma,prefer-
 #endif
 #undef GRAINLAW_KERNEL
 
-template <class Kernel>
-auto best_kernel() {
+enum class Vectors { baseline, avx2, avx512 };
+
+Vectors best_vectors() {
 #if GRAINLAW_KERNELS
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl"))
-    return run_avx512<Kernel>;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return run_avx2<Kernel>;
+    return Vectors::avx512;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return Vectors::avx2;
 #endif
-  return run_baseline<Kernel>;
+  return Vectors::baseline;
+}
+
+template <class Kernel>
+auto best_kernel() {
+  switch (best_vectors()) {
+#if GRAINLAW_KERNELS
+    case Vectors::avx512:
+      return run_avx512<Kernel>;
+    case Vectors::avx2:
+      return run_avx2<Kernel>;
+#endif
+    default:
+      return run_baseline<Kernel>;
+  }
 }
 
 }  // namespace
+
+std::string LightBatch::vectors() {
+  switch (best_vectors()) {
+    case Vectors::avx512:
+      return "avx512";
+    case Vectors::avx2:
+      return "avx2";
+    default:
+      return "baseline";
+  }
+}
 
 LightBatch::LightBatch(const LightLaw& law, std::size_t count, const State& start)
     : law_(law),
@@ -215,19 +233,19 @@ LightBatch::Outcome LightBatch::update(std::span<const double> eps_vol, std::spa
                   "must have one number for each of the " + std::to_string(count_) + " points, got " +
                       std::to_string(span.size()));
   if (threads < 1) throw Error("", "threads", "must be >= 1, got " + std::to_string(threads));
-  const std::size_t blocks = stride_ / Lanes::count,
-                    shares = std::min<std::size_t>(static_cast<std::size_t>(threads),
-                                                   std::max<std::size_t>(blocks, 1));
+  // Fewer points than these are done before another thread has woken up.
+  constexpr std::size_t smallest_share = 2048 / Lanes::count;
+  const std::size_t blocks = stride_ / Lanes::count;
+  if (blocks < 2 * smallest_share || threads == 1)
+    return update_range(0, count_, eps_vol.data(), eps_dev.data());
+  if (!team_ || team_->threads() != threads) team_ = std::make_unique<ThreadPool>(threads);
+  const auto shares = static_cast<std::size_t>(threads);
   std::vector<Outcome> outcomes(shares);
-  const auto work = [&](std::size_t share) {
+  team_->run([&](int thread) {
+    const auto share = static_cast<std::size_t>(thread);
     const auto edge = [&](std::size_t s) { return std::min(count_, blocks * s / shares * Lanes::count); };
     outcomes[share] = update_range(edge(share), edge(share + 1), eps_vol.data(), eps_dev.data());
-  };
-  {
-    std::vector<std::jthread> others;
-    for (std::size_t share = 1; share < shares; ++share) others.emplace_back(work, share);
-    work(0);
-  }
+  });
   Outcome all;
   for (Outcome& outcome : outcomes) {
     if (all.failed == 0 && outcome.failed > 0) {

@@ -4,9 +4,12 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "grainlaw/element/thread_pool.hpp"
 #include "grainlaw/model/light_law.hpp"
 
 namespace grainlaw::model {
@@ -30,6 +33,9 @@ class LightBatch {
     std::size_t first = 0;   ///< the first of them
     Status status;           ///< of the first, else ok
   };
+  /// The instruction set whose vectors this machine runs it on: "avx512", "avx2" or "baseline".
+  static std::string vectors();
+
   /// An increment for every point: eps_vol[i], eps_dev[i] as in LightLaw::update. The answers are LightLaw's
   /// within the tolerance. Throws Error where the spans do not have size() numbers or `threads` < 1.
   Outcome update(std::span<const double> eps_vol, std::span<const double> eps_dev, int threads = 1);
@@ -69,6 +75,7 @@ class LightBatch {
   const LightLaw& law_;
   std::size_t count_, stride_;  // the latter a multiple of the lanes
   std::vector<double> values_;
+  std::unique_ptr<ThreadPool> team_;  // kept from update to update
 };
 
 }  // namespace grainlaw::model

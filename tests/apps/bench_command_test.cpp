@@ -48,7 +48,23 @@ TEST_F(BenchCommand, WritesTablePictureAndPageAndGoesOn) {
   EXPECT_TRUE(refuses(run(again), {"another bench", "count"}));
 }
 
+TEST_F(BenchCommand, ModelWritesItsTableAndPicture) {
+  const Outcome outcome =
+      run({"bench", "model", "--seconds", "1e-9", "--points", "64", "--threads", "2", "-o", "m"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("bytes"));
+  const std::string csv = read("m/model-speed.csv");
+  for (const char* part : {"path,\"monotonic\",CVODE BDF,1e-06", "path,\"cycles\",light,",
+                           "path,\"jamming\",RODAS,", "increment,\"D2 cycle\",CVODE Adams,",
+                           "batch,\"at rest\",light,1e-06,64,2,", "term,\"tangent\",", "sensitivities"})
+    EXPECT_THAT(csv, HasSubstr(part));
+  EXPECT_THAT(read("m/model-speed.svg"), HasSubstr("</svg>"));
+  EXPECT_GE(load_json(folder / "m/model-speed.json").at("state_bytes").get<int>(), 14 * 8 - 7);
+}
+
 TEST_F(BenchCommand, SaysWhatIsWrong) {
+  EXPECT_TRUE(refuses(run({"bench", "model", "--threads", "0"}), {"--threads", "0"}));
+  EXPECT_TRUE(refuses(run({"bench", "model", "nowhere.json"}), {"nowhere.json"}));
   EXPECT_TRUE(refuses(run({"bench", "dem", "--knob", "speed"}), {"--knob", "time_step", "speed"}));
   EXPECT_TRUE(refuses(run({"bench", "dem", "--count", "7"}), {"--count", "7"}));
   EXPECT_TRUE(refuses(run({"bench", "dem", "--nu", "0.8"}), {"--nu", "0.8"}));

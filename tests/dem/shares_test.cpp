@@ -10,7 +10,7 @@
 #include <set>
 
 #include "grainlaw/dem/forces.hpp"
-#include "grainlaw/dem/thread_pool.hpp"
+#include "grainlaw/element/thread_pool.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace grainlaw::dem {
+namespace grainlaw {
 
 /// Whoever calls run() is the first of the team; the others wait for it, for a short while awake, then
 /// asleep, so that a team without work costs nothing and one between two steps loses no time.
@@ -77,4 +77,4 @@ class ThreadPool {
   std::vector<std::thread> others_;
 };
 
-}  // namespace grainlaw::dem
+}  // namespace grainlaw
