@@ -210,7 +210,8 @@ std::optional<MemoryLaws> Reference::memory() const {
   MemoryLaws memory = *set_->memory;
   if (!same_material_) {
     mark_as_other_material(memory, memory_keys, whose());
-    if (memory.phi_cr) memory.phi_cr->source = "assumed";
+    for (auto* option : {&memory.phi_cr, &memory.eps_c, &memory.eps_r})
+      if (*option) (*option)->source = "assumed";
   }
   return memory;
 }

@@ -11,7 +11,8 @@ namespace grainlaw::model {
 
 namespace {
 
-constexpr Form forms[] = {Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14};
+constexpr Form forms[] = {Form::reduced_closed, Form::reduced, Form::coupled, Form::memory,
+                          Form::coupled_3_14};
 
 /// A term by name, and the forms that have a place for it.
 struct Term {
@@ -51,6 +52,8 @@ std::string name_of(Form form) {
       return "reduced";
     case Form::coupled:
       return "coupled";
+    case Form::memory:
+      return "memory";
     case Form::coupled_3_14:
       return "coupled_3_14";
   }
@@ -106,6 +109,21 @@ BasicModuli<P> moduli_of(const ModuliLaws& m, const Reading<P>& read) {
           read(m.a_II), read(m.g_I),     read(m.GB_max), read(m.Fv_min), read(m.Fv_alpha)};
 }
 
+template <class P>
+void add_memory(BasicLaws<P>& laws, const ParameterSet& parameters, const std::string& who,
+                const Reading<P>& read) {
+  laws.shear_pressure = pressure_of(parameters.packing(parameters.closure.contacts, who), read);
+  const MemoryLaws& memory = parameters.need_memory(who);
+  laws.memory.over = over_compression_of(memory, read);
+  const auto needed = [&](const std::optional<Parameter>& parameter, const char* key) {
+    if (!parameter)
+      throw Error(parameters.file, std::string("memory.") + key, "is missing; " + who + " needs it");
+    return read(*parameter);
+  };
+  laws.memory.eps_c = needed(memory.eps_c, "eps_c");
+  laws.memory.eps_r = needed(memory.eps_r, "eps_r");
+}
+
 /// Fills in what the terms need.
 template <class P>
 void add_terms(BasicLaws<P>& laws, const ParameterSet& parameters, const Terms& terms, const std::string& who,
@@ -136,7 +154,8 @@ BasicLaws<P> laws_of(const ParameterSet& parameters, const Choice& choice, const
   laws.s_max = saturation_of(parameters.saturation("s_max", who), read);
   laws.F_max = saturation_of(parameters.saturation("F_max", who), read);
   laws.beta_F = saturation_of(parameters.saturation("beta_F", who), read);
-  if (choice.form == Form::coupled || choice.form == Form::coupled_3_14)
+  if (choice.form == Form::memory) add_memory(laws, parameters, who, read);
+  if (choice.form == Form::coupled || choice.form == Form::memory || choice.form == Form::coupled_3_14)
     laws.moduli = moduli_of(parameters.need_moduli(who), read);
   else
     laws.beta_s = saturation_of(parameters.saturation("beta_s", who), read);

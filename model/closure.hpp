@@ -14,6 +14,7 @@ enum class Form {
   reduced_closed,  ///< Eqs. 2.17, 2.18 with the current nu, the thesis's way on UNI; P* from Eq. 2.14
   reduced,         ///< their rate forms; P* from Eq. 2.14
   coupled,         ///< Eq. 4.16 with moduli 4.11 to 4.15
+  memory,          ///< Eq. 4.16 with P* bounded by phi_J(H): over-compression and shear are remembered
   coupled_3_14     ///< Eq. 3.14, the thesis's earlier form, with the same B and G and one modulus A
 };
 
@@ -37,6 +38,14 @@ std::string name_of(const Choice& choice);
 /// Throws Error listing the names, or those of the terms that the form can take.
 Choice choice_of(const std::string& name);
 
+/// Numbers of the form with memory.
+template <class P>
+struct BasicMemoryNumbers {
+  BasicOverCompression<P> over;  ///< Eqs. 5.1, 5.5
+  P eps_c = 1;                   ///< strain in which aligned shear takes 1 - 1/e of phi_J - phi_s
+  P eps_r = 1;                   ///< the same of giving it back while the fabric is opposed
+};
+
 /// The laws of one form, as numbers.
 template <class P>
 struct BasicLaws {
@@ -44,9 +53,11 @@ struct BasicLaws {
   BasicContactCurve<P> contacts;   ///< closure.contacts, closure.contacts_nu_c
   P g3 = 1;                        ///< of F_v = g3 nu C: moduli.g3 where known, else Eq. 3.8 of material.w
   BasicSaturation<P> s_max, F_max, beta_F;
-  BasicSaturation<P> beta_s;  ///< reduced forms only
-  BasicModuli<P> moduli;      ///< coupled forms only
-  Terms terms;                ///< whose numbers are in the laws
+  BasicSaturation<P> beta_s;             ///< reduced forms only
+  BasicModuli<P> moduli;                 ///< coupled forms only
+  BasicPressureCurve<P> shear_pressure;  ///< memory only: the row closure.contacts, of steady shear
+  BasicMemoryNumbers<P> memory;          ///< memory only
+  Terms terms;                           ///< whose numbers are in the laws
 };
 using Laws = BasicLaws<double>;
 

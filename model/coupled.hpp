@@ -55,6 +55,10 @@ struct BasicCoupled {
     return {begin.P, begin.sigma_dev, begin.F_dev};
   }
 
+  template <class T, class S>
+  auto coefficients(const T& nu, const BasicDirection<S>&) const {
+    return coefficients(nu);
+  }
   /// Coefficients at t between those of t = 0 and 1, where they are linear in t.
   template <class C, class X>
   static Coefficients<Meet<C, X>> between(const Coefficients<C>& a, const Coefficients<C>& b, const X& t) {
@@ -116,8 +120,8 @@ struct BasicCoupled {
   }
 
   /// Reaches 0 where the pressure vanishes.
-  template <class Y>
-  static Y distance_to_event(const Y* y) {
+  template <class C, class S, class Y>
+  Y distance_to_event(const Coefficients<C>&, const BasicDirection<S>&, const Y* y) const {
     return y[0] - smallest_pressure;
   }
 

@@ -14,7 +14,7 @@ namespace grainlaw::model {
 template <class F, class S, class X, class Y>
 bool rate_at(const F& form, const BasicStretch<S>& stretch, const BasicDirection<S>& direction, const X& t,
              const Y* y, Y* dydt) {
-  return form.rate(form.coefficients(stretch.nu(t)), stretch, direction, y, dydt);
+  return form.rate(form.coefficients(stretch.nu(t), direction), stretch, direction, y, dydt);
 }
 
 /// J[i + size j] = d rate_i/d y_j at t of a stretch, by dual numbers. False where the rate is not defined.

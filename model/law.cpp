@@ -26,6 +26,8 @@ BasicLaw<P> make_law(const ParameterSet& parameters, const Choice& choice, const
       return BasicReducedClosed<P>{{std::move(laws)}};
     case Form::reduced:
       return BasicReduced<P>{{std::move(laws)}};
+    case Form::memory:
+      return BasicMemory<P>{std::move(laws)};
     case Form::coupled_3_14:
       return BasicCoupled314<P>{{std::move(laws)}};
     default:

@@ -8,13 +8,15 @@
 #include "grainlaw/model/closure.hpp"
 #include "grainlaw/model/coupled.hpp"
 #include "grainlaw/model/coupled_3_14.hpp"
+#include "grainlaw/model/memory.hpp"
 #include "grainlaw/model/reduced.hpp"
 #include "grainlaw/model/state.hpp"
 
 namespace grainlaw::model {
 
 template <class P>
-using BasicLaw = std::variant<BasicReducedClosed<P>, BasicReduced<P>, BasicCoupled<P>, BasicCoupled314<P>>;
+using BasicLaw =
+    std::variant<BasicReducedClosed<P>, BasicReduced<P>, BasicCoupled<P>, BasicMemory<P>, BasicCoupled314<P>>;
 using Law = BasicLaw<double>;
 
 /// Throws Error where the set lacks what the form needs.
@@ -36,7 +38,7 @@ BasicLaws<P>& laws_of(BasicLaw<P>& law) {
   return std::visit([](auto& form) -> BasicLaws<P>& { return form.laws; }, law);
 }
 
-/// The volume fraction at and below which a jammed point has no contacts whatever it carries.
+/// The volume fraction at and below which a point has no contacts whatever it carries.
 template <class P>
 P unjamming_density(const BasicLaw<P>& law) {
   return std::visit([](const auto& form) { return form.unjamming_density(); }, law);

@@ -40,13 +40,14 @@ enum class LightMethod {
 template <class F, class T>
 class StretchRate {
  public:
-  using Coefficients = decltype(std::declval<F>().coefficients(std::declval<T>()));
+  using Coefficients =
+      decltype(std::declval<F>().coefficients(std::declval<T>(), std::declval<BasicDirection<T>>()));
 
   StretchRate(const F& form, const BasicStretch<T>& stretch, const BasicDirection<T>& direction,
               const Coefficients& at_start)
       : form_(form), stretch_(stretch), direction_(direction), at_start_(at_start) {
     if constexpr (!std::is_same_v<T, double>)
-      if (rests()) at_end_ = form.coefficients(stretch.nu(T(1.0)));
+      if (rests()) at_end_ = form.coefficients(stretch.nu(T(1.0)), direction);
   }
 
   template <class X, class Y>
@@ -56,6 +57,14 @@ class StretchRate {
       return form_.rate(at_start_, stretch_, direction_, y, dydt);
     else
       return form_.rate(F::between(at_start_, at_end_, t), stretch_, direction_, y, dydt);
+  }
+  /// What reaches 0 where the stretch is to be left.
+  template <class X, class Y>
+  auto event(const X& t, const Y* y) const {
+    if constexpr (requires { F::goes_on_unjammed; })
+      if (!rests())
+        return form_.distance_to_event(form_.coefficients(stretch_.nu(t), direction_), direction_, y);
+    return form_.distance_to_event(at_start_, direction_, y);
   }
   /// How much of what changes along the whole stretch would be made up for in it, at the rate with which the
   /// point relaxes or its volume leaves the neighbourhood of jamming.
@@ -107,7 +116,7 @@ class LightRun {
         if (t_ + step_ <= t_) return End::failed;
         continue;
       }
-      if (!(event(trial.y) > 0)) return find_event(method, h, event);
+      if (!(event(t_ + h, trial.y) > 0)) return find_event(method, h, event);
       accept(method, h, trial);
       if (h == left) t_ = to;
       const double growth = *error > 0 ? 0.9 * std::pow(*error, -1.0 / order(method)) : 5;
@@ -204,7 +213,7 @@ class LightRun {
     for (int i = 0; i < 100 && high - low > 1e-16 * h; ++i) {
       const double middle = 0.5 * (low + high);
       const auto error = try_step(method, middle, trial);
-      if (error && event(trial.y) > 0) {
+      if (error && event(t_ + middle, trial.y) > 0) {
         low = middle;
         best = trial;
       } else {
@@ -251,7 +260,7 @@ struct Light {
     if constexpr (F::size == 0)
       return Closed{}(form, state, stretch, next_sample, visit);
     else
-      return run(form, state, stretch, form.coefficients(stretch.nu_0), next_sample, visit);
+      return run(form, state, stretch, form.coefficients(stretch.nu_0, state.direction), next_sample, visit);
   }
 
   /// The same where the coefficients at the start are known.
@@ -265,7 +274,8 @@ struct Light {
       T t = next_sample();
       last = !(t <= 1);
       if (last) t = 1.0;
-      const auto end = run.advance(value(t), [](const auto& y) { return F::distance_to_event(y.data()); });
+      const auto end =
+          run.advance(value(t), [&](double at, const auto& y) { return value(rate.event(at, y.data())); });
       using End = typename LightRun<F, T>::End;
       if (end == End::failed)
         return {{Status::Code::failed, "the step became too small, or steps too many"}, run.t()};
@@ -286,8 +296,17 @@ struct Light {
     } else {
       std::array<T, F::size> dydt;
       if (!rate(T(run.t()), run.y().data(), dydt.data())) return run.t();
-      const T g = F::distance_to_event(run.y().data());
-      return run.t() - (g - value(g)) / value(dydt[0]);
+      using D = Dual<1, T>;
+      std::array<D, F::size> y;
+      for (std::size_t i = 0; i < F::size; ++i) {
+        y[i] = run.y()[i];
+        y[i].slope[0] = dydt[i];
+      }
+      const auto g = rate.event(D(T(run.t()), 0), y.data());
+      if constexpr (std::is_same_v<decltype(g), const double>)
+        return run.t();  // no event of its own
+      else
+        return run.t() - (g.value - value(g)) / value(g.slope[0]);
     }
   }
 };

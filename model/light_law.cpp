@@ -15,6 +15,14 @@ constexpr auto no_sample = [] { return 2.0; };
 constexpr auto no_visit = [](const auto&...) {};
 
 template <class T>
+BasicHistory<T> with_slopes(const History& h) {
+  return {h.phi_H, h.phi_max, h.nu};
+}
+template <class T>
+BasicDirection<T> with_slopes(const Direction& d) {
+  return {d.q, d.S_I, d.S_F_I, d.s_0, d.F_0, d.eps_dev_0, with_slopes<T>(d.history), d.jammed};
+}
+template <class T>
 BasicState<T> with_slopes(const State& s) {
   return {s.nu,
           s.eps_vol,
@@ -24,8 +32,9 @@ BasicState<T> with_slopes(const State& s) {
           s.F_dev,
           s.phi_J,
           s.jammed,
-          {s.direction.q, s.direction.S_I, s.direction.S_F_I, s.direction.s_0, s.direction.F_0,
-           s.direction.eps_dev_0}};
+          with_slopes<T>(s.direction),
+          with_slopes<T>(s.history),
+          s.memory};
 }
 
 }  // namespace
@@ -99,7 +108,7 @@ Status LightLaw::update(State& state, double eps_vol, double eps_dev, Tangent& t
   const BasicStretch<T> stretch{state.nu, T(eps_vol, 0), T(eps_dev, 1)};
   if (Status status = walk_along(moved, stretch, {}, no_visit); status.failed()) return status;
   // At rest the tangent is that of the next, elastic, increment; nothing is forgotten.
-  if (eps_vol == 0 && eps_dev == 0) moved.direction = with_slopes<T>(state).direction;
+  if (eps_vol == 0 && eps_dev == 0) moved.direction = with_slopes<T>(state.direction);
   for (std::size_t i = 0; i < 2; ++i) {
     tangent.P[i] = moved.P.slope[i];
     tangent.sigma_dev[i] = moved.sigma_dev.slope[i];

@@ -132,9 +132,20 @@ ShearLaws read_shear(Reader reader) {
   return shear;
 }
 
+/// What of the memory may be unknown.
+struct MemoryOption {
+  const char* name;
+  std::optional<Parameter> MemoryLaws::*member;
+  Range range;
+};
+const MemoryOption memory_options[] = {{"phi_cr", &MemoryLaws::phi_cr, inside(0, 1)},
+                                       {"eps_c", &MemoryLaws::eps_c, above(0)},
+                                       {"eps_r", &MemoryLaws::eps_r, above(0)}};
+
 MemoryLaws read_memory(Reader reader) {
   auto memory = read_keys<MemoryLaws>(reader);
-  if (auto object = maybe_object(reader, "phi_cr")) memory.phi_cr = read_parameter(*object, inside(0, 1));
+  for (const auto& [name, member, range] : memory_options)
+    if (auto object = maybe_object(reader, name)) memory.*member = read_parameter(*object, range);
   reader.finish();
   return memory;
 }
@@ -225,7 +236,8 @@ Json ParameterSet::to_json() const {
   }
   if (memory) {
     json["memory"] = group_json(*memory);
-    if (memory->phi_cr) json["memory"]["phi_cr"] = parameter_json(*memory->phi_cr);
+    for (const auto& [key, member, range] : memory_options)
+      if ((*memory).*member) json["memory"][key] = parameter_json(*((*memory).*member));
   }
   return json;
 }
@@ -245,7 +257,8 @@ std::vector<NamedParameter> ParameterSet::named() const {
   if (moduli) add("moduli", *moduli);
   if (memory) {
     add("memory", *memory);
-    if (memory->phi_cr) list.push_back({"memory.phi_cr", &*memory->phi_cr, inside(0, 1)});
+    for (const auto& [key, member, range] : memory_options)
+      if ((*memory).*member) list.push_back({std::string("memory.") + key, &*((*memory).*member), range});
   }
   return list;
 }

@@ -66,7 +66,7 @@ std::vector<double> row_of(const Law& law, const State& state, std::size_t leg) 
     if (column == "sigma_dev") return state.sigma_dev;
     if (column == "s_dev") return state.s_dev();
     if (column == "F_v") return contacts.F_v;
-    if (column == "F_dev") return state.F_dev;
+    if (column == "F_dev") return state.jammed ? state.F_dev : 0;  // without contacts there is no fabric
     if (column == "C") return contacts.C;
     if (column == "C_star") return contacts.C_star;
     if (column == "f_NR") return contacts.f_NR;

@@ -110,6 +110,10 @@ struct BasicReduced : BasicReducedPoint<P> {
     return {saturation(laws.s_max, nu), saturation(laws.beta_s, nu), saturation(laws.F_max, nu),
             saturation(laws.beta_F, nu)};
   }
+  template <class T, class S>
+  auto coefficients(const T& nu, const BasicDirection<S>&) const {
+    return coefficients(nu);
+  }
   /// Coefficients at t between those of t = 0 and 1, where they are linear in t.
   template <class C, class X>
   static Coefficients<Meet<C, X>> between(const Coefficients<C>& a, const Coefficients<C>& b, const X& t) {
@@ -138,8 +142,8 @@ struct BasicReduced : BasicReducedPoint<P> {
     return {std::max(value(c.s_max), std::abs(value(y[0]))), std::max(value(c.F_max), std::abs(value(y[1])))};
   }
   /// Pressure follows the volume: no event of its own.
-  template <class Y>
-  static double distance_to_event(const Y*) {
+  template <class C, class S, class Y>
+  double distance_to_event(const Coefficients<C>&, const BasicDirection<S>&, const Y*) const {
     return 1;
   }
   template <class T>

@@ -37,6 +37,7 @@ class Filling {
     const Form form = form_of(result_.law);
     return form == Form::coupled || form == Form::coupled_3_14;
   }
+  bool remembers() const { return form_of(result_.law) == Form::memory; }
   BasicLaws<T>& laws() { return laws_of(result_.law); }
   std::string pressure_law() const {
     return "the pressure law isotropic." + parameters_.closure.P + " (Eq. 2.14)" +
@@ -65,10 +66,15 @@ class Filling {
   }
   /// Another jamming density than that of the parameter set moves every law with it.
   void take_history(const T& phi_J, const std::string& from) {
-    laws() = with_jamming_density(laws(), phi_J);
+    if (!remembers()) laws() = with_jamming_density(laws(), phi_J);
     set_phi_J(phi_J, from);
   }
 
+  /// The pressure law at the start's phi_J: the form with memory leaves its laws as they are.
+  BasicPressureCurve<T> law_of_history() {
+    return remembers() ? with_jamming_density(laws().pressure, result_.state.phi_J) : laws().pressure;
+  }
+  void fill_history();
   void fill_phi_J();
   void check_phi_max();
   /// The reduced forms get P by the law at that phi_J. The coupled form integrates from the given P: its laws
@@ -145,7 +151,7 @@ std::string Filling<T>::beyond_pressure_law(const T& P) {
 template <class T>
 void Filling<T>::fill_P() {
   BasicState<T>& state = result_.state;
-  state.P = start_.P ? given_("P", *start_.P) : pressure(laws().pressure, state.nu);
+  state.P = start_.P ? given_("P", *start_.P) : pressure(law_of_history(), state.nu);
   if (start_.P && *start_.P == 0 && start_.phi_J && *start_.phi_J < state.nu)
     fail("P", "must be > 0 where nu > phi_J, got 0");
   echo("P", state.P, start_.P ? "given" : pressure_law());
@@ -162,10 +168,37 @@ void Filling<T>::fill_shear() {
   echo("F_dev", state.F_dev, start_.F_dev ? "given" : "an isotropic start");
 }
 
+/// Of the form with memory: phi_J at the start is that of an isotropic packing, and the largest volume
+/// fraction it has seen, if not given, the one whose first compression leaves it.
+template <class T>
+void Filling<T>::fill_history() {
+  BasicState<T>& state = result_.state;
+  const auto& over = laws().memory.over;
+  T phi_max = state.nu;
+  if (start_.phi_max) {
+    phi_max = given_("phi_max", *start_.phi_max);
+  } else {
+    const double most = 0.99;
+    const auto too_low = [&](double phi) {
+      return value(jamming_density_after(over, T(phi), 1.0)) < value(state.phi_J);
+    };
+    if (too_low(value(state.nu))) phi_max = turning_point(value(state.nu), most, too_low);
+    echo("phi_max", phi_max,
+         "the compression that leaves phi_J, by Eqs. 5.1 and 5.5 with M = 1, at least nu");
+  }
+  state.history = {state.phi_J, phi_max, state.nu};
+}
+
 /// Jammed or not; an unjammed point carries nothing.
 template <class T>
 void Filling<T>::settle() {
   BasicState<T>& state = result_.state;
+  if (remembers()) {
+    fill_history();
+    state.jammed = state.P > smallest_pressure;
+    if (!state.jammed) unjam(result_.law, state);
+    return;
+  }
   const T begin = unjamming_density(result_.law);
   state.jammed = state.P > smallest_pressure && state.nu > begin;
   if (state.jammed) return;

@@ -37,6 +37,15 @@ struct BasicStretch {
 };
 using Stretch = BasicStretch<double>;
 
+/// What over-compression has left, in the form with memory.
+template <class T>
+struct BasicHistory {
+  T phi_H = 0;    ///< phi_J of the isotropic packing
+  T phi_max = 0;  ///< largest volume fraction seen
+  T nu = 0;       ///< where this is so
+};
+using History = BasicHistory<double>;
+
 /// What a direction of shear remembers of its start. A direction begins at the start of a path, at a
 /// reversal, after a relaxation, and with the first shear after a purely isotropic stretch.
 template <class T>
@@ -47,6 +56,9 @@ struct BasicDirection {
   T s_0 = 0;        ///< s_dev at its start (Eq. 2.17)
   T F_0 = 0;        ///< F_dev at its start (Eq. 2.18)
   T eps_dev_0 = 0;  ///< eps_dev at its start
+  /// Of the state that the present stretch begins with; only in the form with memory.
+  BasicHistory<T> history{};
+  bool jammed = true;
 };
 using Direction = BasicDirection<double>;
 
@@ -62,6 +74,8 @@ struct BasicState {
   T phi_J = 0;          ///< jamming density: at and below it the point is unjammed
   bool jammed = false;  ///< unjammed: P = sigma_dev = F_dev = 0, no contacts
   BasicDirection<T> direction;
+  BasicHistory<T> history{};  ///< only in the form with memory
+  T memory = 0;               ///< of shear, m in [0, 1]; only in the form with memory
 
   /// sigma_dev/P; NaN where unjammed.
   T s_dev() const {
@@ -85,14 +99,20 @@ Stretch values_of(const BasicStretch<T>& s) {
   return {value(s.nu_0), value(s.eps_vol), value(s.eps_dev)};
 }
 template <class T>
+History values_of(const BasicHistory<T>& h) {
+  return {value(h.phi_H), value(h.phi_max), value(h.nu)};
+}
+template <class T>
 Direction values_of(const BasicDirection<T>& d) {
-  return {d.q, value(d.S_I), value(d.S_F_I), value(d.s_0), value(d.F_0), value(d.eps_dev_0)};
+  return {d.q,          value(d.S_I),       value(d.S_F_I),       value(d.s_0),
+          value(d.F_0), value(d.eps_dev_0), values_of(d.history), d.jammed};
 }
 template <class T>
 State values_of(const BasicState<T>& s) {
-  return {value(s.nu),    value(s.eps_vol),   value(s.eps_dev),
-          value(s.P),     value(s.sigma_dev), value(s.F_dev),
-          value(s.phi_J), s.jammed,           values_of(s.direction)};
+  return {value(s.nu),          value(s.eps_vol),   value(s.eps_dev),
+          value(s.P),           value(s.sigma_dev), value(s.F_dev),
+          value(s.phi_J),       s.jammed,           values_of(s.direction),
+          values_of(s.history), value(s.memory)};
 }
 
 /// |1 - q x/x_sat|, the scale of S and S_F in a direction. At saturation there is no elastic part: plastic

@@ -6,6 +6,7 @@
 #include "grainlaw/model/coupled.hpp"
 #include "grainlaw/model/form.hpp"
 #include "grainlaw/model/integrator.hpp"
+#include "grainlaw/model/memory.hpp"
 
 namespace grainlaw::model {
 
@@ -21,6 +22,10 @@ System system_of(const Form& form, const Stretch& stretch, const Direction& dire
   };
   if constexpr (std::is_base_of_v<Coupled, Form>)
     system.event = [](double, const double* y) { return y[0] - smallest_pressure; };
+  if constexpr (std::is_same_v<Form, Memory>)
+    system.event = [&](double t, const double* y) {
+      return form.distance_to_event(form.coefficients(stretch.nu(t), direction), direction, y);
+    };
   return system;
 }
 

@@ -83,10 +83,11 @@ class Walk {
   Status run() {
     const auto q = course_.whole().q();
     if (q == 0) state_.direction = {};  // shear after an isotropic stretch begins a new direction
-    if (state_.jammed && q != 0 && q != state_.direction.q) form_.begin_direction(state_, q);
+    if ((state_.jammed || goes_on_unjammed) && q != 0 && q != state_.direction.q)
+      form_.begin_direction(state_, q);
     for (int phase = 0; !course_.done(); ++phase) {
       if (phase == most_phases) return {Status::Code::failed, "contact is lost and found again without end"};
-      if (!state_.jammed) {
+      if (!state_.jammed && !goes_on_unjammed) {
         walk_unjammed();
       } else if (Status status = walk_jammed(); status.failed()) {
         return status;
@@ -96,12 +97,18 @@ class Walk {
   }
 
  private:
+  /// Whether the form integrates without contacts as well, and finds both events itself.
+  static constexpr bool goes_on_unjammed = requires { F::goes_on_unjammed; };
+
   /// A stretch along which contact is lost and found again more often than this is given up.
   static constexpr int most_phases = 1000;
 
   void visit(const BasicState<T>& state) { visit_(course_.pass_sample(), state); }
 
   void walk_unjammed() {
+    if constexpr (!goes_on_unjammed) walk_to_contacts();
+  }
+  void walk_to_contacts() requires(!goes_on_unjammed) {
     T end = 1.0;
     bool jams = false;
     if (course_.whole().eps_vol > 0) {
@@ -119,7 +126,31 @@ class Walk {
     note_(true, state_);
   }
 
+  /// A form that goes on unjammed: its event is the loss of contact or its return.
+  Status walk_either() {
+    form_.prepare(state_);
+    const Reached<T> reached = solve_(
+        form_, state_, course_.piece(1.0), [&] { return course_.next_sample(1.0); },
+        [&](const BasicState<T>& state) { visit(state); });
+    course_.advance(reached.t, 1.0);
+    if (reached.status.failed() || !reached.lost_pressure) return reached.status;
+    if (state_.jammed)
+      form_.unjam(state_);
+    else
+      form_.jam(state_, course_.piece(1.0));
+    note_(state_.jammed, state_);
+    return {};
+  }
+
   Status walk_jammed() {
+    if constexpr (goes_on_unjammed) {
+      return walk_either();
+    } else {
+      return walk_jammed_to_its_end();
+    }
+  }
+
+  Status walk_jammed_to_its_end() requires(!goes_on_unjammed) {
     T end = 1.0;
     bool leaves = false;
     if (course_.whole().eps_vol < 0) {

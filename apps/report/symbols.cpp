@@ -124,6 +124,10 @@ const std::vector<Symbol> memory{
      "The same after a reversal of shear."},
     {"memory.phi_cr", "<var>φ</var><sub>cr</sub>", "{/:Italic φ}_{cr}", "–",
      "Density below which a reversal of shear unjams the packing."},
+    {"memory.eps_c", "<var>ε</var><sub>c</sub>", "{/:Italic ε}_c", "–",
+     "Strain in which shear along its fabric takes phi_J towards that of steady shear (form memory)."},
+    {"memory.eps_r", "<var>ε</var><sub>r</sub>", "{/:Italic ε}_r", "–",
+     "Strain in which shear against its fabric gives phi_J back (form memory)."},
 };
 
 const std::vector<Symbol> material{

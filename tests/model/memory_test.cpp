@@ -1,0 +1,307 @@
+// The form with memory: over-compression by Eqs. 5.1 and 5.5, shear by its rate against a closed form and
+// Eq. 5.3, shear jamming and loss of contact at reversal, pressure that does not drift, and every integrator
+// on all of it.
+#include "grainlaw/model/memory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "grainlaw/model/light_law.hpp"
+#include "grainlaw/model/point.hpp"
+#include "grainlaw/model/start.hpp"
+#include "walks.hpp"
+
+namespace grainlaw::model {
+namespace {
+
+using testing::HasSubstr;
+
+ParameterSet with_memory() {
+  ParameterSet set = thesis();
+  set.memory->eps_c.emplace().value = 0.076;
+  set.memory->eps_r.emplace().value = 0.0123;
+  return set;
+}
+
+Memory form() { return std::get<Memory>(make_law(with_memory(), Form::memory)); }
+
+/// An isotropic point of jamming density phi_J that has seen phi_max.
+State isotropic(double nu, double phi_J, double phi_max = 0.82) {
+  const Memory law = form();
+  State state;
+  state.nu = nu;
+  state.phi_J = phi_J;
+  state.history = {phi_J, phi_max, nu};
+  state.P = law.pressure_of(nu, phi_J, 0.0);
+  state.jammed = state.P > smallest_pressure;
+  if (!state.jammed) state.P = 0;
+  return state;
+}
+
+MaterialPoint point_at(const State& start, Tolerance tolerance = {1e-10, 1e-13}) {
+  return MaterialPoint(make_law(with_memory(), Form::memory), start, tolerance);
+}
+
+/// ln(1 - m) of shear from isotropy at constant volume: the integral of a = 1 - exp(-beta e) over eps_c.
+double forgotten(double beta, double e, double eps_c) { return -(e + std::expm1(-beta * e) / beta) / eps_c; }
+
+TEST(Memory, CyclesOfOverCompressionFollowEquation5_1) {
+  const Memory law = form();
+  const auto& over = law.laws.memory.over;
+  for (const double phi_max : {0.68, 0.73, 0.82}) {
+    State start = isotropic(0.64, over.phi_SJ, 0.64);
+    MaterialPoint point = point_at(start);
+    for (int M = 1; M <= 20; ++M) {
+      ASSERT_FALSE(point.walk(std::log(phi_max / 0.64), 0).failed());
+      EXPECT_NEAR(point.state().history.phi_H, jamming_density_after(over, phi_max, M), 1e-6) << M;
+      EXPECT_NEAR(point.state().history.phi_max, phi_max, 1e-12);
+      ASSERT_FALSE(point.walk(-std::log(phi_max / 0.64), 0).failed());
+      EXPECT_FALSE(point.state().jammed);
+      EXPECT_NEAR(point.events().back().nu, jamming_density_after(over, phi_max, M), 1e-6) << M;
+    }
+  }
+}
+
+TEST(Memory, OverCompressionMayBeCutIntoPieces) {
+  const State start = isotropic(0.64, 0.6567, 0.64);
+  const double up = std::log(0.73 / 0.64);
+  const auto compress = [&](int pieces) {
+    MaterialPoint point = point_at(start);
+    for (int cycle = 0; cycle < 3; ++cycle)
+      for (const double way : {up, -up})
+        for (int i = 0; i < pieces; ++i) EXPECT_FALSE(point.walk(way / pieces, 0).failed());
+    return point.state().history.phi_H;
+  };
+  // ln(phi_max/phi_H) is that of the piece: phi_H moves by 1e-3 of itself within a cycle.
+  EXPECT_NEAR(compress(1), compress(100), 2e-5);
+}
+
+TEST(Memory, BeyondTheLargestDensityACycleIsAFirstOneAgain) {
+  const auto& over = form().laws.memory.over;
+  const double five = jamming_density_after(over, 0.70, 5.0);
+  History history{five, 0.70, 0.64};
+  history = compressed<double, double>(over, history, 0.7001);
+  EXPECT_GE(history.phi_H, five);  // what cycles have left is not lost
+  history = compressed<double, double>(over, history, 0.82);
+  EXPECT_EQ(history.phi_H, jamming_density_after(over, 0.82, 1.0));
+  EXPECT_EQ(history.phi_max, 0.82);
+  history = compressed<double, double>(over, history, 0.7);
+  EXPECT_EQ(history.phi_H, jamming_density_after(over, 0.82, 1.0));
+}
+
+TEST(Memory, CompressionBelowTheShearJammingDensityLeavesNone) {
+  const auto& over = form().laws.memory.over;
+  History history{over.phi_SJ, 0.64, 0.64};
+  history = compressed<double, double>(over, history, 0.656);
+  EXPECT_EQ(history.phi_H, over.phi_SJ);
+  history = compressed<double, double>(over, history, over.phi_SJ);
+  EXPECT_EQ(history.phi_H, over.phi_SJ);
+  history = compressed<double, double>(over, history, 0.99);
+  EXPECT_EQ(history.phi_H, jamming_density_after(over, 0.99, 1.0));
+}
+
+TEST(Memory, ShearTakesTheJammingDensityByItsClosedForm) {
+  const Memory law = form();
+  const double nu = 0.711, beta = saturation(law.laws.beta_F, nu);
+  MaterialPoint point = point_at(isotropic(nu, 0.6649));
+  for (int i = 1; i <= 40; ++i) {
+    ASSERT_FALSE(point.walk(0, 0.01).failed());
+    const double m = -std::expm1(forgotten(beta, 0.01 * i, 0.076));
+    EXPECT_NEAR(point.state().memory, m, 1e-9);
+    EXPECT_NEAR(point.state().phi_J, 0.6649 + m * (0.6581 - 0.6649), 1e-11);
+    EXPECT_NEAR(point.state().P, law.pressure_of(nu, 0.6649, m), 1e-10);
+  }
+}
+
+TEST(Memory, TheStrainsOfEquations5_3And5_13FollowFromOneRate) {
+  // exp[-(eps/0.102)^1.37] of first shear; exp[-(eps/0.17)^1.37] after a reversal, where the fabric has to
+  // turn first.
+  const double nu = 0.711;
+  MaterialPoint point = point_at(isotropic(nu, 0.6649));
+  double first = 0, again = 0;
+  for (int i = 1; i <= 40; ++i) {
+    ASSERT_FALSE(point.walk(0, 0.01).failed());
+    first = std::max(first, std::abs(1 - point.state().memory - std::exp(-std::pow(0.01 * i / 0.102, 1.37))));
+  }
+  EXPECT_LT(first, 0.05);
+  ASSERT_FALSE(point.walk(0, -0.04).failed());  // phi_J has come back
+  const double most = 1 - point.state().memory;
+  EXPECT_GT(most, 0.5);
+  EXPECT_LT(most, 0.9);
+  for (int i = 5; i <= 40; ++i) {
+    ASSERT_FALSE(point.walk(0, -0.01).failed());
+    again = std::max(
+        again, std::abs((1 - point.state().memory) / most - std::exp(-std::pow(0.01 * i / 0.17, 1.37))));
+  }
+  EXPECT_LT(again, 0.15);
+}
+
+TEST(Memory, SteadyShearHasThePressureOfItsRowWhateverWasBefore) {
+  const Memory law = form();
+  for (const double phi_J : {0.6600, 0.6649, 0.6690}) {
+    MaterialPoint point = point_at(isotropic(0.711, phi_J));
+    ASSERT_FALSE(point.walk(0, 2).failed());
+    EXPECT_NEAR(point.state().P, pressure(law.laws.shear_pressure, 0.711), 1e-9);
+    EXPECT_NEAR(point.state().s_dev(), saturation(law.laws.s_max, 0.711), 1e-6);
+  }
+}
+
+TEST(Memory, PressureRisesBelowADensityAndFallsAboveIt) {
+  // Dilatancy and compactancy: steady shear over the start (Fig. 4.2).
+  const auto change = [](double nu) {
+    MaterialPoint point = point_at(isotropic(nu, 0.6649));
+    const double before = point.state().P;
+    EXPECT_FALSE(point.walk(0, 1).failed());
+    return point.state().P / before - 1;
+  };
+  EXPECT_GT(change(0.685), 0.1);
+  EXPECT_GT(change(0.711), 0.03);
+  EXPECT_LT(change(0.82), 0);
+}
+
+TEST(Memory, ManyCyclesDoNotPumpPressure) {
+  MaterialPoint point = point_at(isotropic(0.711, 0.6649), {1e-8, 1e-11});
+  std::vector<double> ends;
+  for (int i = 0; i < 400; ++i) {
+    ASSERT_FALSE(point.walk(0, i % 2 == 0 ? 0.1 : -0.1).failed());
+    if (i % 2 == 1) ends.push_back(point.state().P);
+  }
+  EXPECT_NEAR(ends.back(), ends[20], 1e-7 * ends[20]);
+  MaterialPoint without(make_law(with_memory(), Form::coupled), isotropic(0.711, 0.6649), {1e-8, 1e-11});
+  for (int i = 0; i < 400; ++i) ASSERT_FALSE(without.walk(0, i % 2 == 0 ? 0.1 : -0.1).failed());
+  EXPECT_GT(std::abs(without.state().P / ends[20] - 1), 0.1);  // Eq. 4.16 by itself does
+}
+
+TEST(Memory, ShearJamsBetweenBothDensitiesAndReversalUnjams) {
+  const Memory law = form();
+  const double nu = 0.6610, phi_H = 0.6649, phi_s = law.laws.shear_pressure.nu_c;
+  MaterialPoint point = point_at(isotropic(nu, phi_H));
+  ASSERT_FALSE(point.state().jammed);
+  ASSERT_FALSE(point.walk(0, 0.3).failed());
+  ASSERT_TRUE(point.state().jammed);
+  EXPECT_GT(point.state().P, 1e-4);
+  EXPECT_GT(point.state().s_dev(), 0.05);
+  // Where it jams: m = (phi_H - nu)/(phi_H - phi_s), by the closed form.
+  ASSERT_EQ(point.events().size(), 1U);
+  const double e = point.events()[0].eps_dev, beta = saturation(law.laws.beta_F, nu);
+  EXPECT_NEAR(-std::expm1(forgotten(beta, e, 0.076)), (phi_H - nu) / (phi_H - phi_s), 1e-4);
+  ASSERT_FALSE(point.walk(0, -0.06).failed());
+  EXPECT_FALSE(point.state().jammed);
+  ASSERT_FALSE(point.walk(0, -0.3).failed());
+  EXPECT_TRUE(point.state().jammed);
+  EXPECT_LT(point.state().s_dev(), -0.05);
+  EXPECT_EQ(point.events().size(), 3U);
+}
+
+TEST(Memory, BelowTheDensityOfSteadyShearNothingJams) {
+  const double phi_s = form().laws.shear_pressure.nu_c;
+  for (const double nu : {0.65, phi_s}) {
+    MaterialPoint point = point_at(isotropic(nu, 0.6649));
+    for (const double e : {0.1, -0.2, 1.0, 100.0}) {
+      ASSERT_FALSE(point.walk(0, e).failed());
+      EXPECT_FALSE(point.state().jammed);
+      EXPECT_EQ(point.state().P, 0);
+    }
+  }
+}
+
+TEST(Memory, ReversalInTheMiddleOfShearJamming) {
+  MaterialPoint point = point_at(isotropic(0.6610, 0.6649));
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_FALSE(point.walk(0, (i % 2 == 0 ? 1 : -1) * (0.001 + 0.002 * (i % 50))).failed()) << i;
+    ASSERT_GE(point.state().P, 0);
+    ASSERT_GE(point.state().memory, 0);
+    ASSERT_LE(point.state().memory, 1);
+  }
+}
+
+TEST(Memory, ExactlyAtTheJammingDensity) {
+  for (const double nu : {0.6649 * (1 - 1e-12), 0.6649, 0.6649 * (1 + 1e-12)}) {
+    MaterialPoint point = point_at(isotropic(nu, 0.6649));
+    EXPECT_FALSE(point.state().jammed);
+    ASSERT_FALSE(point.walk(0.01, 0.01).failed());
+    EXPECT_TRUE(point.state().jammed);
+    ASSERT_FALSE(point.walk(-0.03, 0).failed());
+    EXPECT_FALSE(point.state().jammed);
+  }
+}
+
+/// Everything at once: over-compression, shear jamming, loss of contact at reversal, decompression under
+/// shear.
+const std::vector<std::array<double, 2>> eventful{
+    {0.05, 0},    {0.15, 0.1}, {-0.2, 0.05}, {0, 0.4}, {0, -0.05}, {0, -0.4},  {0.06, 0.1}, {0, -0.2},
+    {-0.1, -0.1}, {0.03, 0},   {0, 0.3},     {0, 0},   {0, -0.3},  {0.2, 0.2}, {-0.25, 0},  {0.05, 0.5}};
+
+TEST(Memory, LightPathAgreesWithCvodeThroughEverything) {
+  const Law law = make_law(with_memory(), Form::memory);
+  const State start = isotropic(0.64, 0.6567, 0.64);
+  MaterialPoint point(law, start, {1e-11, 1e-14});
+  std::vector<State> reference;
+  for (const auto& [v, e] : eventful) {
+    const Status status = point.walk(v, e);
+    ASSERT_FALSE(status.failed()) << status.message;
+    reference.push_back(point.state());
+  }
+  EXPECT_GT(point.events().size(), 5U);
+  for (const double rtol : {1e-4, 1e-6, 1e-8}) {
+    const LightLaw light(law, {rtol, 1e-3 * rtol});
+    State state = start;
+    for (std::size_t i = 0; i < eventful.size(); ++i) {
+      const Status status = light.update(state, eventful[i][0], eventful[i][1]);
+      ASSERT_FALSE(status.failed()) << status.message;
+      EXPECT_EQ(state.jammed, reference[i].jammed) << i;
+      EXPECT_NEAR(state.P, reference[i].P, 10 * rtol * 0.02) << i;
+      EXPECT_NEAR(state.sigma_dev, reference[i].sigma_dev, 10 * rtol * 0.004) << i;
+      EXPECT_NEAR(state.F_dev, reference[i].F_dev, 10 * rtol * 0.12) << i;
+      EXPECT_NEAR(state.memory, reference[i].memory, 10 * rtol) << i;
+    }
+  }
+}
+
+TEST(Memory, TangentThroughShearJamming) {
+  const LightLaw light(make_law(with_memory(), Form::memory), {1e-11, 1e-14});
+  for (const State& start : {isotropic(0.6610, 0.6649), isotropic(0.70, 0.6649)})
+    for (const auto& [v, e] : std::vector<std::array<double, 2>>{{0, 0.25}, {0.005, 0.2}, {0.01, 0.01}}) {
+      SCOPED_TRACE(shown(start.nu) + " " + shown(v));
+      Tangent tangent;
+      State end = start;
+      ASSERT_FALSE(light.update(end, v, e, tangent).failed());
+      ASSERT_TRUE(end.jammed);
+      const auto at = [&](double dv, double de) {
+        State moved = start;
+        EXPECT_FALSE(light.update(moved, v + dv, e + de).failed());
+        return moved;
+      };
+      const double step = 1e-6;
+      const State e_up = at(0, step), e_down = at(0, -step), v_up = at(step, 0), v_down = at(-step, 0);
+      const State& v_from =
+          v == 0 ? end : v_up;  // compression is remembered, decompression is not: a kink at rest
+      const double v_step = v == 0 ? step : 2 * step;
+      EXPECT_NEAR(tangent.P[0], (v_from.P - v_down.P) / v_step, 1e-5);
+      EXPECT_NEAR(tangent.P[1], (e_up.P - e_down.P) / (2 * step), 1e-5);
+      EXPECT_NEAR(tangent.sigma_dev[0], (v_from.sigma_dev - v_down.sigma_dev) / v_step, 1e-5);
+      EXPECT_NEAR(tangent.sigma_dev[1], (e_up.sigma_dev - e_down.sigma_dev) / (2 * step), 1e-5);
+    }
+}
+
+TEST(Memory, StartsFromPressureOrJammingDensityOrCompression) {
+  const ParameterSet set = with_memory();
+  const auto start = [&](const std::string& text) {
+    return start_of(set,
+                    path_of(R"({"start": )" + text + R"(, "segments": [{"mode": "d2", "amount": 0.1}]})"),
+                    Form::memory);
+  };
+  EXPECT_EQ(start(R"({"nu": 0.7, "phi_J": 0.664})").state.history.phi_H, 0.664);
+  const auto pressed = start(R"({"nu": 0.7, "P": 0.017})").state;
+  EXPECT_NEAR(form().pressure_of(0.7, pressed.history.phi_H, 0.0), 0.017, 1e-12);
+  EXPECT_EQ(pressed.P, 0.017);
+  const auto compressed = start(R"({"nu": 0.7, "phi_max": 0.75})").state;
+  EXPECT_EQ(compressed.history.phi_H, jamming_density_after(form().laws.memory.over, 0.75, 1.0));
+  EXPECT_EQ(compressed.history.phi_max, 0.75);
+  EXPECT_THAT(refusal([&] { start(R"({"nu": 0.7, "P": 0.017, "phi_J": 0.664})"); }),
+              HasSubstr("phi_J: redundant"));
+  EXPECT_THAT(refusal([] { make_law(thesis(), Form::memory); }), HasSubstr("memory.eps_c: is missing"));
+}
+
+}  // namespace
+}  // namespace grainlaw::model
