@@ -14,6 +14,8 @@ namespace {
 using model::shown;
 
 constexpr double entangled = 0.95;
+/// Root mean square of residuals, in errors, up to which a law can be said to follow the data.
+constexpr double follows = 1.5;
 
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 Json number(const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); }
@@ -69,6 +71,11 @@ Json sentences(const PathProblem& problem, const PathFit& fit) {
     list.push_back(reason.empty() ? "determined: " + found(problem, fit, k)
                                   : "not determined: " + problem.names()[k] + ": " + reason);
   }
+  const Misfits left = misfits_of(problem, fit.best.values);
+  if (left.stress > follows || left.fabric > follows)
+    list.push_back("the law does not follow the paths within their errors (residuals of " +
+                   shown(left.stress) + " errors in stress, " + shown(left.fabric) +
+                   " in fabric): values make up for what its form lacks, and standard errors leave that out");
   for (const Pair& pair : entangled_pairs(problem, fit))
     list.push_back("entangled: " + pair.a + " and " + pair.b + " (correlation " + shown(pair.correlation) +
                    ")");
