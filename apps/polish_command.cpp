@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string parameters, dir, output, account, rows;
+  std::string parameters, dir, output, account, rows, form;
   std::vector<std::string> names, modes{"d2", "d3"};
   bool brief = false;
 };
@@ -76,6 +76,7 @@ int run(const Arguments& arguments) {
     check_output("--account", arguments.account, {arguments.parameters, arguments.output});
   calibrate::PolishOptions options;
   options.names = arguments.names;
+  options.form = model::choice_of(arguments.form);
   options.selection.modes = arguments.modes;
   options.trade_off = options.profiles = !arguments.brief;
   if (!arguments.rows.empty())
@@ -102,6 +103,7 @@ Action add_polish(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("polish", "Fits chosen parameters to whole measured paths, after grainlaw fit");
   const auto arguments = std::make_shared<Arguments>();
+  arguments->form = name_of(model::Choice{});
   command->add_option("PARAMETERS.json", arguments->parameters, "parameter set to start from")->required();
   command->add_option("DIR", arguments->dir, "output directory of a campaign, or a directory of records")
       ->required();
@@ -117,6 +119,9 @@ Action add_polish(CLI::App& program) {
                    "parameters to fit (moduli.a_I, ...; default: moduli and saturation laws of shear)")
       ->type_name("NAME[,NAME...]")
       ->delimiter(',');
+  command->add_option("--form", arguments->form, "form of the law, as of predict")
+      ->type_name("FORM")
+      ->capture_default_str();
   command->add_option("--modes", arguments->modes, "tests to read")
       ->type_name("MODE[,MODE...]")
       ->delimiter(',')

@@ -50,13 +50,22 @@ model::ParameterSet polished(const PathProblem& problem, const PathFit& fit) {
 
 }  // namespace
 
-std::vector<std::string> polished_by_default(const model::ParameterSet& set) {
+std::vector<std::string> polished_by_default(const model::ParameterSet& set, const model::Choice& form) {
+  std::vector<std::string> wanted{"shear.s_max.Q_max", "shear.s_max.Q_v",  "shear.F_max.Q_v",
+                                  "shear.F_max.alpha", "shear.beta_F.Q_v", "shear.beta_F.alpha",
+                                  "moduli.g_I",        "moduli.GB_max"};
+  const bool coupled = form.form == model::Form::coupled || form.form == model::Form::coupled_3_14;
+  if (form.terms.energy)
+    wanted.insert(wanted.end(), {"moduli.a_F", "moduli.a_s"});
+  else if (coupled)
+    wanted.push_back("moduli.a_I");
+  else
+    wanted.insert(wanted.end(), {"shear.beta_s.Q_max", "shear.beta_s.Q_v"});
   std::vector<std::string> names;
-  for (const model::NamedParameter& entry : set.named())
-    for (const char* wanted :
-         {"moduli.a_I", "moduli.g_I", "moduli.GB_max", "shear.s_max.Q_max", "shear.s_max.Q_v",
-          "shear.F_max.Q_v", "shear.F_max.alpha", "shear.beta_F.Q_v", "shear.beta_F.alpha"})
-      if (entry.name == wanted) names.push_back(entry.name);
+  for (const model::NamedParameter& entry : set.named()) {
+    if (!coupled && entry.name.starts_with("moduli.")) continue;
+    if (std::find(wanted.begin(), wanted.end(), entry.name) != wanted.end()) names.push_back(entry.name);
+  }
   return names;
 }
 
@@ -67,11 +76,12 @@ PolishOutput polish(const std::filesystem::path& dir, const model::ParameterSet&
   std::vector<PathSeries> series = path_series(folder, options.selection, left_out);
   if (series.empty()) throw Error(dir.string(), "", "no record of a mode and role that a polish reads");
   model::PredictOptions predict;
-  predict.form = options.form;
+  predict.form = options.form.form;
+  predict.terms = options.form.terms;
   predict.rtol = options.rtol;
   predict.atol = 1e-4 * options.rtol;
   predict.method = model::Method::adams;  // with sensitivities the faster of the two on these paths
-  const auto names = options.names.empty() ? polished_by_default(start) : options.names;
+  const auto names = options.names.empty() ? polished_by_default(start, options.form) : options.names;
   if (names.empty()) throw Error(start.file, "", "has none of the parameters that a polish fits by default");
   const PathProblem problem(start, names, std::move(series), predict);
 

@@ -16,16 +16,16 @@ namespace grainlaw::calibrate {
 struct PolishOptions {
   std::vector<std::string> names;  ///< parameters to fit; empty: polished_by_default()
   PathSelection selection;
-  model::Form form = model::Form::coupled;
+  model::Choice form;     ///< and terms past the thesis
   double rtol = 1e-6;     ///< of the integrations
   bool trade_off = true;  ///< sweep the weight of fabric against stress
   bool profiles = true;   ///< profile likelihoods
   bool held_out = true;   ///< compare predictions of tests of role predict, before and after
 };
 
-/// Moduli and saturation laws that shear at constant volume depends on, of those that the set has. The
-/// densities nu_c that laws count from stay, as in the fits law by law.
-std::vector<std::string> polished_by_default(const model::ParameterSet& set);
+/// Moduli and saturation laws that shear at constant volume depends on in this form, of those that the set
+/// has. The densities nu_c that laws count from stay, as in the fits law by law.
+std::vector<std::string> polished_by_default(const model::ParameterSet& set, const model::Choice& form);
 
 struct PolishOutput {
   /// The start with fitted values (source "fit", standard errors); the start itself where nothing could be

@@ -182,7 +182,7 @@ Json account_of(const PathProblem& problem, const PathFit& fit, const std::vecto
 }
 
 Json held_out(const RecordFolder& folder, const model::ParameterSet& before, const model::ParameterSet& after,
-              model::Form form) {
+              const model::Choice& form) {
   Json list = Json::array();
   for (const TestRecord& test : folder.tests) {
     if (test.role != Role::predict) continue;
@@ -194,7 +194,8 @@ Json held_out(const RecordFolder& folder, const model::ParameterSet& before, con
       path.start = Start{};
       path.start.nu = test.nu_start;
       model::PredictOptions options;
-      options.form = form;
+      options.form = form.form;
+      options.terms = form.terms;
       try {
         const auto p = model::predict(*set, path, model::samples_of(test.rows, path, test.nu_start), options);
         entry["status"][which] = model::name_of(p.status.code);

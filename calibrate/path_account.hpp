@@ -40,6 +40,6 @@ Json account_of(const PathProblem& problem, const PathFit& fit, const std::vecto
 
 /// Relative L2 error of each column of every record of role predict, with the one set and the other.
 Json held_out(const RecordFolder& folder, const model::ParameterSet& before, const model::ParameterSet& after,
-              model::Form form);
+              const model::Choice& form);
 
 }  // namespace grainlaw::calibrate

@@ -242,7 +242,11 @@ std::vector<NamedParameter> ParameterSet::named() const {
     for (const auto& [quantity, member] : quantities)
       if ((*shear).*member) add(std::string("shear.") + quantity, *((*shear).*member));
   }
-  if (moduli) add("moduli", *moduli);
+  if (moduli) {
+    add("moduli", *moduli);
+    if (moduli->a_F) list.push_back({"moduli.a_F", &*moduli->a_F, any_number()});
+    if (moduli->a_s) list.push_back({"moduli.a_s", &*moduli->a_s, any_number()});
+  }
   if (memory) {
     add("memory", *memory);
     if (memory->phi_cr) list.push_back({"memory.phi_cr", &*memory->phi_cr, inside(0, 1)});
