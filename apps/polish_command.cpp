@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::string parameters, dir, output, account, rows, form;
   std::vector<std::string> names, modes{"d2", "d3"};
+  std::string weights = "scatter";
   bool brief = false;
 };
 
@@ -78,6 +79,9 @@ int run(const Arguments& arguments) {
   options.names = arguments.names;
   options.form = model::choice_of(arguments.form);
   options.selection.modes = arguments.modes;
+  if (arguments.weights != "scatter" && arguments.weights != "size")
+    throw Error("", "--weights", "must be one of scatter, size, got \"" + arguments.weights + "\"");
+  if (arguments.weights == "size") options.selection.weights = calibrate::PathWeights::size;
   options.trade_off = options.profiles = !arguments.brief;
   if (!arguments.rows.empty())
     options.selection.rows_per_leg =
@@ -125,6 +129,11 @@ Action add_polish(CLI::App& program) {
   command->add_option("--modes", arguments->modes, "tests to read")
       ->type_name("MODE[,MODE...]")
       ->delimiter(',')
+      ->capture_default_str();
+  command
+      ->add_option("--weights", arguments->weights,
+                   "scatter: errors from the scatter over seeds; size: 5 % of each column of each test")
+      ->type_name("WEIGHTS")
       ->capture_default_str();
   command->add_option("--rows", arguments->rows, "rows of each leg that are compared (default: 30)")
       ->type_name("NUMBER");

@@ -10,7 +10,7 @@
 namespace grainlaw::calibrate {
 namespace {
 
-constexpr double least_relative_error = 0.01, error_of_one_seed = 0.05;
+constexpr double least_relative_error = 0.01, error_without_scatter = 0.05;
 
 /// Rows of each leg at (i/n)^2 of its rows, and its last one.
 std::vector<std::size_t> thinned_rows(const std::vector<model::Sample>& samples, std::size_t rows_per_leg) {
@@ -66,7 +66,7 @@ Mean mean_over(const std::vector<const TestRecord*>& seeds, const char* column,
   return out;
 }
 
-PathSeries series_of(const std::vector<const TestRecord*>& seeds, std::size_t rows_per_leg) {
+PathSeries series_of(const std::vector<const TestRecord*>& seeds, const PathSelection& selection) {
   const TestRecord& first = *seeds.front();
   PathSeries series;
   series.test = first.test;
@@ -77,14 +77,15 @@ PathSeries series_of(const std::vector<const TestRecord*>& seeds, std::size_t ro
   series.path.start = Start{};
   series.path.start.nu = nu;
   const auto samples = model::samples_of(first.rows, first.path, first.nu_start);
-  const auto rows = thinned_rows(samples, rows_per_leg);
+  const auto rows = thinned_rows(samples, selection.rows_per_leg);
+  const bool scatter = seeds.size() > 1 && selection.weights == PathWeights::scatter;
   for (const std::size_t row : rows) series.samples.push_back(samples[row]);
   for (std::size_t q = 0; q < path_columns.size(); ++q) {
     const Mean mean = mean_over(seeds, path_columns[q], rows);
     series.measured[q] = mean.values;
-    series.from_scatter[q] = seeds.size() > 1;
-    series.error[q] = seeds.size() > 1 ? std::hypot(mean.error, least_relative_error * mean.size)
-                                       : error_of_one_seed * mean.size;
+    series.from_scatter[q] = scatter;
+    series.error[q] = scatter ? std::hypot(mean.error, least_relative_error * mean.size)
+                              : error_without_scatter * mean.size;
   }
   return series;
 }
@@ -110,7 +111,7 @@ std::vector<PathSeries> path_series(const RecordFolder& folder, const PathSelect
   for (const auto& [name, seeds] : tests) {
     if (seeds.empty()) continue;
     try {
-      series.push_back(series_of(seeds, selection.rows_per_leg));
+      series.push_back(series_of(seeds, selection));
     } catch (const Error& error) {
       left_out.push_back({name, selection.role, error.what()});
       continue;

@@ -26,13 +26,20 @@ struct PathSeries {
   /// Of `measured`: root mean square over the rows of the standard error of the mean, and 1 % of the size of
   /// the column, which no law is asked to beat, added in squares. With one seed 5 % of the size.
   std::array<double, 3> error{};
-  std::array<bool, 3> from_scatter{};  ///< false: one seed alone
+  std::array<bool, 3> from_scatter{};  ///< false: 5 % of the size
+};
+
+/// Where `error` is from.
+enum class PathWeights {
+  scatter,  ///< between seeds, see PathSeries::error
+  size      ///< 5 % of the size of each column of each test: all count alike
 };
 
 struct PathSelection {
   std::vector<std::string> modes{"d2", "d3"};
   Role role = Role::fit;
   std::size_t rows_per_leg = 30;  ///< closer at the beginning of a leg, where everything happens
+  PathWeights weights = PathWeights::scatter;
 };
 
 /// Tests of `folder`, with those that are left out and why appended to `left_out`.
