@@ -140,8 +140,8 @@ Action add_polish(CLI::App& program) {
   command->add_flag("--brief", arguments->brief, "no profiles and no trade-off: several times faster");
   command->footer(
       "Example:\n"
-      "  grainlaw fit data/records/base -o fitted.json\n"
-      "  grainlaw polish fitted.json data/records/base -o polished.json --account polish.json");
+      "  grainlaw polish fitted.json data/records/base -o polished.json --account polish.json\n"
+      "with fitted.json from: grainlaw fit data/records/base -o fitted.json");
   return [arguments] { return run(*arguments); };
 }
 
