@@ -22,6 +22,7 @@ Action add_calibrate(CLI::App& program);
 Action add_simulate(CLI::App& program);
 Action add_predict(CLI::App& program);
 Action add_fit(CLI::App& program);
+Action add_polish(CLI::App& program);
 Action add_report(CLI::App& program);
 Action add_bench(CLI::App& program);
 Action add_export(CLI::App& program);

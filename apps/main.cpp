@@ -32,6 +32,7 @@ constexpr auto examples =
     "  grainlaw predict data/thesis/parameters.json data/paths/d2-cycle.json -o d2.csv --si\n"
     "                                                            the law along a path, stress in kPa\n"
     "  grainlaw fit out/quick -o parameters.json                 the fits alone, from records on disk\n"
+    "  grainlaw polish parameters.json out/quick -o polished.json  the fit of whole paths, after it\n"
     "  grainlaw report out/quick                                 pictures and tables from what is on disk\n"
     "  grainlaw bench dem                                        what a wanted error of the DEM costs\n"
     "  grainlaw probe out/d2/snapshots.h5 -o moduli.csv          small-strain moduli of packings\n"
@@ -59,9 +60,9 @@ int run_command_line(int argc, char** argv) {
   program.footer(examples);
   program.set_version_flag("--version", version_text(), "version, commit, compiler and libraries");
   program.require_subcommand(1);
-  const std::array<Action, 8> actions{add_calibrate(program), add_simulate(program), add_predict(program),
-                                      add_fit(program),       add_report(program),   add_bench(program),
-                                      add_export(program),    add_probe(program)};
+  const std::array<Action, 9> actions{add_calibrate(program), add_simulate(program), add_predict(program),
+                                      add_fit(program),       add_polish(program),   add_report(program),
+                                      add_bench(program),     add_export(program),   add_probe(program)};
   const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
   const auto is_unknown = [&](const std::string& name) {
     return std::none_of(commands.begin(), commands.end(),
@@ -69,7 +70,7 @@ int run_command_line(int argc, char** argv) {
   };
   if (argc > 1 && argv[1][0] != '-' && is_unknown(argv[1]))
     return complain_usage(program, fmt::format("unknown command \"{}\"; known are calibrate, simulate, "
-                                               "predict, fit, report, probe, export, bench",
+                                               "predict, fit, polish, report, probe, export, bench",
                                                argv[1]));
   try {
     program.parse(argc, argv);

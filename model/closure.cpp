@@ -1,6 +1,7 @@
 #include "grainlaw/model/closure.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <sstream>
 #include <vector>
@@ -138,8 +139,19 @@ void add_terms(BasicLaws<P>& laws, const ParameterSet& parameters, const Terms& 
 
 }  // namespace
 
+void check_finite(const ParameterSet& parameters, const Parameter& parameter) {
+  if (std::isfinite(parameter.value)) return;
+  for (const NamedParameter& entry : parameters.named())
+    if (entry.parameter == &parameter)
+      throw Error(parameters.file, entry.name, "must be a finite number, got " + to_text(parameter.value));
+}
+
 template <class P>
-BasicLaws<P> laws_of(const ParameterSet& parameters, const Choice& choice, const Reading<P>& read) {
+BasicLaws<P> laws_of(const ParameterSet& parameters, const Choice& choice, const Reading<P>& read_as) {
+  const Reading<P> read = [&](const Parameter& parameter) {
+    check_finite(parameters, parameter);
+    return read_as(parameter);
+  };
   const std::string who = "the " + name_of(choice) + " form";
   const Closure& closure = parameters.closure;
   BasicLaws<P> laws;

@@ -11,6 +11,7 @@
 #include "grainlaw/model/memory.hpp"
 #include "grainlaw/model/reduced.hpp"
 #include "grainlaw/model/state.hpp"
+#include "grainlaw/model/status.hpp"
 
 namespace grainlaw::model {
 
@@ -48,6 +49,14 @@ P unjamming_density(const BasicLaw<P>& law) {
 template <class P, class T>
 void unjam(const BasicLaw<P>& law, BasicState<T>& state) {
   std::visit([&](const auto& form) { form.unjam(state); }, law);
+}
+
+/// What is no finite number of a state and a stretch from it, in words, if anything.
+template <class T>
+std::optional<std::string> not_finite(const BasicState<T>& state, double eps_vol, double eps_dev) {
+  if (!is_finite(state)) return "the state holds what is not a number: nu, P, sigma_dev or F_dev";
+  if (std::isfinite(eps_vol) && std::isfinite(eps_dev)) return std::nullopt;
+  return "the strain is not a number: eps_vol = " + shown(eps_vol) + ", eps_dev = " + shown(eps_dev);
 }
 
 /// What keeps the laws from this stretch, in words ("s_max is -0.01 at nu = 0.9 and must be > 0"), if

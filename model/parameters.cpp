@@ -254,7 +254,11 @@ std::vector<NamedParameter> ParameterSet::named() const {
     for (const auto& [quantity, member] : quantities)
       if ((*shear).*member) add(std::string("shear.") + quantity, *((*shear).*member));
   }
-  if (moduli) add("moduli", *moduli);
+  if (moduli) {
+    add("moduli", *moduli);
+    if (moduli->a_F) list.push_back({"moduli.a_F", &*moduli->a_F, any_number()});
+    if (moduli->a_s) list.push_back({"moduli.a_s", &*moduli->a_s, any_number()});
+  }
   if (memory) {
     add("memory", *memory);
     for (const auto& [key, member, range] : memory_options)

@@ -47,6 +47,7 @@ MaterialPoint::MaterialPoint(Law law, const State& start, Tolerance tolerance, M
 Status MaterialPoint::walk(double eps_vol, double eps_dev, std::span<const double> samples,
                            const Visit& visit) {
   const Stretch whole{state_.nu, eps_vol, eps_dev};
+  if (auto reason = not_finite(state_, eps_vol, eps_dev)) return {Status::Code::failed, *reason};
   if (eps_vol == 0 && eps_dev == 0) {
     for (std::size_t i = 0; i < samples.size(); ++i) visit(i, state_);
     return {};

@@ -22,8 +22,12 @@ constexpr std::size_t most_events = 10;
 
 bool is_shear(const Leg& leg) { return leg.eps_dev[0] != leg.eps_dev[1]; }
 
-/// The law carries one direction of shear: every leg must keep the axes of the first that shears.
-void check_axes(const Path& path, const std::vector<Leg>& legs) {
+/// Strains must be numbers, and the law carries one direction of shear: every leg must keep the axes of the
+/// first that shears.
+void check_legs(const Path& path, const std::vector<Leg>& legs) {
+  for (std::size_t i = 0; i < legs.size(); ++i)
+    if (!std::isfinite(legs[i].eps_vol[1]) || !std::isfinite(legs[i].eps_dev[1]))
+      throw Error(path.file, path.segments[i].key, "its strain must be a finite number");
   const auto first = std::find_if(legs.begin(), legs.end(), is_shear);
   for (auto leg = first; leg != legs.end(); ++leg)
     if (is_shear(*leg) && !coaxial(leg->strain, first->strain))
@@ -162,7 +166,7 @@ Prediction predict(const ParameterSet& parameters, const Path& path, const std::
                    const PredictOptions& options) {
   const StartState start = start_of(parameters, path, {options.form, options.terms});
   const std::vector<Leg> legs = path.legs(start.state.nu);
-  check_axes(path, legs);
+  check_legs(path, legs);
   check_samples(samples, legs.size());
   Prediction prediction{Record(prediction_columns()), start.echo, start.warnings, {}};
   MaterialPoint point(start.law, start.state, {options.rtol, options.atol}, options.method);
@@ -185,7 +189,7 @@ SensitivePrediction predict_sensitivities(const ParameterSet& parameters, const 
   const StartState start = start_of(parameters, path, {options.form, options.terms});
   const auto slopes = seeds.start(parameters, path, {options.form, options.terms});
   const std::vector<Leg> legs = path.legs(start.state.nu);
-  check_axes(path, legs);
+  check_legs(path, legs);
   check_samples(samples, legs.size());
   std::vector<std::string> columns = prediction_columns();
   for (const std::string& name : names)

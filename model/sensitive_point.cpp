@@ -130,6 +130,7 @@ SensitivePoint::SensitivePoint(Law law, BasicLaw<Slopes> slopes_law, const Basic
 
 Status SensitivePoint::walk(double eps_vol, double eps_dev, std::span<const double> samples,
                             const Visit& visit) {
+  if (auto reason = not_finite(state_, eps_vol, eps_dev)) return {Status::Code::failed, *reason};
   if (eps_vol == 0 && eps_dev == 0) {
     for (std::size_t i = 0; i < samples.size(); ++i) visit(i, state_);
     return {};

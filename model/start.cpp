@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/model/status.hpp"
@@ -24,6 +26,7 @@ class Filling {
         result_{make_law<T>(parameters, choice, read), {}, {}, {}} {}
 
   BasicStartState<T> run() {
+    check_given();
     fill_nu();
     fill_phi_J();
     fill_P();
@@ -54,6 +57,15 @@ class Filling {
     result_.echo[key] = {{"value", std::isfinite(x) ? Json(x) : Json(nullptr)}, {"from", from}};
   }
 
+  void check_given() const {
+    for (const auto& [key, number] : {std::pair{"nu", start_.nu},
+                                      {"P", start_.P},
+                                      {"sigma_dev", start_.sigma_dev},
+                                      {"F_dev", start_.F_dev},
+                                      {"phi_J", start_.phi_J},
+                                      {"phi_max", start_.phi_max}})
+      if (number && !std::isfinite(*number)) fail(key, "must be a finite number, got " + to_text(*number));
+  }
   void fill_nu() {
     if (!start_.nu) fail("nu", "is missing; the parameter set has no volume fraction to start from");
     result_.state.nu = given_("nu", *start_.nu);
@@ -104,7 +116,11 @@ void Filling<T>::fill_phi_J() {
   } else if (start_.P) {
     infer_phi_J(given_("P", *start_.P));
   } else if (start_.phi_max) {
-    const auto memory = over_compression_of(parameters_.need_memory("start.phi_max"), read_);
+    const auto memory =
+        over_compression_of<T>(parameters_.need_memory("start.phi_max"), [&](const Parameter& p) {
+          check_finite(parameters_, p);
+          return read_(p);
+        });
     take_history(jamming_density_after(memory, given_("phi_max", *start_.phi_max), 1.0),
                  "start.phi_max, by Eqs. 5.1 and 5.5 with M = 1");
   } else {

@@ -115,6 +115,13 @@ State values_of(const BasicState<T>& s) {
           values_of(s.history), value(s.memory)};
 }
 
+/// Every number of it but what the direction remembers.
+template <class T>
+bool is_finite(const BasicState<T>& s) {
+  return std::isfinite(value(s.nu) + value(s.eps_vol) + value(s.eps_dev) + value(s.P) + value(s.sigma_dev) +
+                       value(s.F_dev));
+}
+
 /// |1 - q x/x_sat|, the scale of S and S_F in a direction. At saturation there is no elastic part: plastic
 /// from the start. The floor keeps that limit finite; an elastic part this short (in strain, it over beta) is
 /// none.

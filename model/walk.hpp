@@ -154,9 +154,10 @@ class Walk {
     T end = 1.0;
     bool leaves = false;
     if (course_.whole().eps_vol < 0) {
-      const T t = course_.at(form_.unjamming_density());
-      leaves = t <= 1;
-      if (leaves) end = t;
+      const auto density = form_.unjamming_density();
+      const T t = course_.at(density);
+      leaves = t <= 1 || course_.whole().nu(T(1.0)) <= density;  // of a breath of volume t is badly rounded
+      if (t <= 1) end = t;
     }
     // Where the contacts are lost at `end`, the state there belongs to the unjammed phase that follows.
     const auto next_sample = [&]() -> T {
@@ -168,7 +169,9 @@ class Walk {
                                       [&](const BasicState<T>& state) { visit(state); });
     course_.advance(reached.t, end);
     if (reached.status.failed()) return reached.status;
-    if (!leaves && !reached.lost_pressure) return {};
+    if (!is_finite(state_))
+      return {Status::Code::failed, "the law gives a stress or fabric that is no number"};
+    if (!leaves && !reached.lost_pressure && state_.P > 0) return {};
     form_.unjam(state_);
     note_(false, state_);
     return {};

@@ -43,6 +43,71 @@ TEST(Integrator, AchievesTheAskedErrorStiffOrNot) {
     }
 }
 
+TEST(Integrator, AdamsAchievesTheAskedErrorInFewerStepsWhereNothingIsStiff) {
+  for (const double lambda : {1.0, 40.0})
+    for (const double rtol : {1e-4, 1e-7, 1e-10}) {
+      const System system = relaxation(lambda);
+      const auto steps = [&](Method method) {
+        Integrator integrator(1, {rtol, rtol}, method);
+        double y = 2;
+        EXPECT_FALSE(integrator.start(system, 0, 1, &y).failed());
+        EXPECT_FALSE(integrator.advance(1, &y).status.failed());
+        EXPECT_NEAR(y, std::cos(1) + std::exp(-lambda), 10 * rtol) << name_of(method);
+        return integrator.steps();
+      };
+      if (rtol < 1e-5) {
+        EXPECT_LT(steps(Method::adams), steps(Method::bdf)) << rtol;
+      }
+    }
+  EXPECT_EQ(method_of("adams"), Method::adams);
+  EXPECT_THAT(refusal([] { method_of("euler"); }), HasSubstr("method: must be one of bdf, adams"));
+}
+
+TEST(Integrator, AdamsNeedsMoreStepsWhereItIsStiff) {
+  const System system = relaxation(1e5);
+  const auto steps = [&](Method method) {
+    Integrator integrator(1, {1e-6, 1e-6}, method);
+    double y = 2;
+    EXPECT_FALSE(integrator.start(system, 0, 1, &y).failed());
+    EXPECT_FALSE(integrator.advance(1, &y).status.failed());
+    EXPECT_NEAR(y, std::cos(1), 1e-5);
+    return integrator.steps();
+  };
+  EXPECT_GT(steps(Method::adams), 10 * steps(Method::bdf));
+}
+
+/// dy/dt = -p_0 y + p_1: y = (1 - p_1/p_0) exp(-p_0 t) + p_1/p_0 from y = 1.
+TEST(Integrator, SensitivitiesOfALinearProblem) {
+  const double p0 = 3, p1 = 2;
+  System system;
+  system.rate = [=](double, const double* y, double* dy) {
+    dy[0] = -p0 * y[0] + p1;
+    return true;
+  };
+  system.jacobian = [=](double, const double*, double* J) {
+    J[0] = -p0;
+    return true;
+  };
+  system.sensitivity_rate = [=](double, const double* y, const double* s, double* ds) {
+    ds[0] = -p0 * s[0] - y[0];
+    ds[1] = -p0 * s[1] + 1;
+    return true;
+  };
+  for (const Method method : {Method::bdf, Method::adams})
+    for (const double rtol : {1e-5, 1e-9}) {
+      Integrator integrator(1, {rtol, 1e-3 * rtol}, method, {p0, p1});
+      double y = 1, s[] = {0, 0};
+      ASSERT_FALSE(integrator.start(system, 0, 1, &y, s).failed());
+      for (const double t : {0.3, 1.0}) {
+        ASSERT_FALSE(integrator.advance(t, &y, s).status.failed());
+        const double fall = std::exp(-p0 * t);
+        EXPECT_NEAR(s[0], p1 / p0 / p0 * (fall - 1) - (1 - p1 / p0) * t * fall, 10 * rtol);
+        EXPECT_NEAR(s[1], (1 - fall) / p0, 10 * rtol);
+      }
+    }
+  EXPECT_THAT(refusal([] { Integrator(1, {}, Method::bdf, {1, 0}); }), HasSubstr("scales: must be > 0"));
+}
+
 TEST(Integrator, LooksNoFurtherThanTheEnd) {
   double furthest = 0;
   System system = relaxation(3);

@@ -29,6 +29,19 @@ struct Case {
 const char* vanishing = R"({"start": {"nu": 0.6582, "P": 1e-4, "sigma_dev": 2e-5, "F_dev": 0.15},
     "segments": [{"mode": "d2", "amount": -0.1}, {"mode": "iso", "amount": 0.05}]})";
 
+const char* simple =
+    R"({"start": {"nu": 0.69, "phi_max": 0.75, "F_dev": 0.02}, "segments": [{"mode": "d2", "amount": 0.05},
+    {"mode": "iso", "amount": 0.02}, {"mode": "d2", "amount": -0.02}]})";
+
+/// With numbers for the term past the thesis.
+ParameterSet with_energy() {
+  ParameterSet set = thesis();
+  set.moduli->a_F = set.moduli->a_s = set.moduli->a_I;
+  set.moduli->a_F->value = 3.59;
+  set.moduli->a_s->value = 0.149;
+  return set;
+}
+
 std::vector<Case> cases() {
   ParameterSet fresh = thesis();
   fresh.closure = {"iso", "d2", false};
@@ -39,9 +52,7 @@ std::vector<Case> cases() {
           {"mode": "uni", "amount": -0.1}, {"mode": "uni", "amount": 0.15}]})"},
       {"UniFromUnjammed", R"({"start": {"nu": 0.66}, "segments": [{"mode": "uni", "amount": 0.15}]})"},
       {"PressureVanishesInShear", vanishing},
-      {"GivenHistory",
-       R"({"start": {"nu": 0.69, "phi_max": 0.75, "F_dev": 0.02}, "segments": [{"mode": "d2", "amount": 0.05},
-          {"mode": "iso", "amount": 0.02}]})"},
+      {"GivenHistory", simple, with_energy()},
       {"ContactsOfTheirOwn", R"({"start": {"nu": 0.69}, "segments": [{"mode": "uni", "amount": 0.03}]})",
        fresh},
   };
@@ -69,8 +80,8 @@ double size_of(const Case& c, const std::string& name) {
   return number != 0 ? std::abs(number) : 1;
 }
 
-Record record_of(const Moved& m, Form form) {
-  const Prediction p = predict(m.set, m.path, {form, exact_rtol, exact_atol, 4});
+Record record_of(const Moved& m, Form form, Terms terms) {
+  const Prediction p = predict(m.set, m.path, {form, exact_rtol, exact_atol, 4, terms});
   EXPECT_FALSE(p.status.failed()) << p.status.message;
   return p.record;
 }
@@ -85,10 +96,11 @@ double largest(const std::vector<double>& x) {
 /// below 1e-6 at its best (the differences themselves, at 1e-12, are no better than that), and falls and
 /// rises again over the steps. Steps too small for anything but rounding and a size that nothing has are left
 /// out.
-void expect_derivatives(const Case& c, Form form) {
-  SCOPED_TRACE(std::string(c.name) + ", " + name_of(form));
+void expect_derivatives(const Case& c, Form form, Terms terms = {}) {
+  SCOPED_TRACE(std::string(c.name) + ", " + name_of(Choice{form, terms}));
   const auto names = names_of_sensitivities(c.set, path_of(c.path), {form, {}});
-  const auto s = predict_sensitivities(c.set, path_of(c.path), names, {form, exact_rtol, exact_atol, 4});
+  const auto s =
+      predict_sensitivities(c.set, path_of(c.path), names, {form, exact_rtol, exact_atol, 4, terms});
   ASSERT_FALSE(s.prediction.status.failed()) << s.prediction.status.message;
   constexpr std::array steps{1e-3, 1e-5, 1e-6, 1e-10};
   std::array<double, steps.size()> worst{};
@@ -97,7 +109,8 @@ void expect_derivatives(const Case& c, Form form) {
     std::map<std::string, double> lowest;
     for (std::size_t k = 0; k < worst.size(); ++k) {
       const double h = steps[k] * size;
-      const Record up = record_of(*moved(c, name, h), form), down = record_of(*moved(c, name, -h), form);
+      const Record up = record_of(*moved(c, name, h), form, terms),
+                   down = record_of(*moved(c, name, -h), form, terms);
       for (const std::string& column : sensitive_columns()) {
         const auto& slopes = s.prediction.record[sensitivity_column(column, name)];
         double error = 0;
@@ -123,6 +136,10 @@ class SensitivitiesOf : public testing::TestWithParam<Case> {};
 TEST_P(SensitivitiesOf, AreTheDerivativesOfPredictions) {
   expect_derivatives(GetParam(), Form::coupled);
   if (GetParam().path == vanishing) return;
+  if (GetParam().path == simple) {
+    expect_derivatives(GetParam(), Form::coupled, {.energy = true});
+    expect_derivatives(GetParam(), Form::coupled_3_14);
+  }
   expect_derivatives(GetParam(), Form::reduced);
   expect_derivatives(GetParam(), Form::reduced_closed);
 }
