@@ -102,10 +102,13 @@ struct CoaxialLaw::Parts {
 };
 
 CoaxialLaw::Parts CoaxialLaw::split(const Sym6& strain) const {
-  const double eps_vol = trace(strain), eps_dev = deviator_along(strain, axis_);
+  const double eps_vol = trace(strain), eps_dev = deviator_along(strain, axis_),
+               size = std::abs(eps_vol) + deviator_magnitude(strain);
   Sym6 rest = strain;
   for (std::size_t i = 0; i < 6; ++i) rest[i] -= eps_dev * axis_[i];
-  return {eps_vol, eps_dev, deviator_magnitude(rest), std::abs(eps_vol) + deviator_magnitude(strain)};
+  // Isotropic strain with a rounding error in its deviator is no reversal.
+  const auto rounded = [&](double x) { return std::abs(x) > coaxial_rounding * size ? x : 0; };
+  return {rounded(eps_vol), rounded(eps_dev), deviator_magnitude(rest), size};
 }
 
 /// The laws of a point's history. Those that were moved last are kept.

@@ -40,6 +40,10 @@ struct CoaxialSettings {
 /// Throws Error for an axis without deviator and for tolerances out of range.
 void check(const CoaxialSettings& settings);
 
+/// A volume strain, or a deviator along the axis, that is a smaller part of an increment's size is its
+/// rounding error and counts as 0.
+inline constexpr double coaxial_rounding = 1e-12;
+
 /// A point between two increments.
 struct CoaxialState {
   State point;
