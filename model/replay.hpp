@@ -12,10 +12,10 @@ namespace grainlaw::model {
 struct Replay {
   ParameterSet parameters;
   CoaxialSettings settings;
-  CoaxialState state;  ///< before the increment
-  Sym6 increment;      ///< as the host wrote it
-  bool tangent;        ///< whether it was asked for
-  std::string status;  ///< what came of it when the file was written: name_of(Status::Code)
+  CoaxialState state;    ///< before the increment
+  Sym6 increment{};      ///< as the host wrote it
+  bool tangent = false;  ///< whether it was asked for
+  std::string status;    ///< what came of it when the file was written: name_of(Status::Code)
   std::string message;
   std::string version, commit;  ///< of the grainlaw that wrote it
 

@@ -3,19 +3,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static int give_up(const char *what, const char *message) {
+static int give_up(const char* what, const char* message) {
   fprintf(stderr, "%s: %s\n", what, message);
   return EXIT_FAILURE;
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   enum { legs = 3, steps = 4000 }; /* eps_dev to 0.4, to -0.4, and back to 0.4 */
-  const char *given[] = {"nu"};
+  const char* given[] = {"nu"};
   const double nu[] = {0.711}, sqrt3 = 1.7320508075688772, deps_dev[legs] = {1e-4, -2e-4, 2e-4};
   double stress[6], tangent[36], *state;
   char message[256];
-  grainlaw_law *law;
-  grainlaw_context *context;
+  grainlaw_law* law;
+  grainlaw_context* context;
   grainlaw_settings settings = GRAINLAW_SETTINGS;
   size_t length;
   int leg, i, status;
