@@ -36,6 +36,16 @@ void write(const fs::path& dir, const std::string& kind, const fs::path& example
   write_file(dir / (kind + "-" + example.stem().string() + ".json"), json.dump(2));
 }
 
+/// An increment that a host would keep because it failed.
+Json refused_increment(const model::ParameterSet& parameters) {
+  model::CoaxialSettings settings;
+  settings.axis = {-1, 1, 0, 0, 0, 0};
+  const auto begin = model::CoaxialLaw(parameters, settings).start(Start{0.711, {}, {}, {}, {}, {}});
+  return model::Replay{parameters,     settings, begin.state, {0, 0, 1e-3, 0, 0, 0}, false, "not_coaxial",
+                       "another axis", "0.1.0",  "unknown"}
+      .to_json();
+}
+
 void write_examples(const fs::path& data, const fs::path& dir) {
   const auto parameters = model::ParameterSet::load(data / "thesis" / "parameters.json");
   for (const auto& file : examples(data / "paths")) {
@@ -50,16 +60,6 @@ void write_examples(const fs::path& data, const fs::path& dir) {
   for (const auto& file : examples(data / "thesis"))
     write(dir, "parameters", file, model::ParameterSet::load(file).to_json());
   write(dir, "replay", "d2.json", refused_increment(parameters));
-}
-
-/// An increment that a host would keep because it failed.
-Json refused_increment(const model::ParameterSet& parameters) {
-  model::CoaxialSettings settings;
-  settings.axis = {-1, 1, 0, 0, 0, 0};
-  const auto begin = model::CoaxialLaw(parameters, settings).start(Start{0.711, {}, {}, {}, {}, {}});
-  return model::Replay{parameters,     settings, begin.state, {0, 0, 1e-3, 0, 0, 0}, false, "not_coaxial",
-                       "another axis", "0.1.0",  "unknown"}
-      .to_json();
 }
 
 /// Two element tests with few grains, the second from a snapshot of the first.
