@@ -1,5 +1,5 @@
 // The law between tensors: stress along the axis, permuted and rotated frames, shear components, notations,
-// and the tangent against differences.
+// and what is refused.
 #include "grainlaw/model/coaxial.hpp"
 
 #include <gmock/gmock.h>
@@ -8,73 +8,12 @@
 #include <cmath>
 #include <random>
 
-#include "checks.hpp"
+#include "coaxial_fixture.hpp"
 
 namespace grainlaw::model {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr Sym6 d2{-1, 1, 0, 0, 0, 0}, uni{-0.5, -0.5, 1, 0, 0, 0}, shear_xy{0, 0, 0, 0, 0, 1},
-    general{0.3, -1, 0.2, 0.5, -0.4, 0.8};
-constexpr std::array forms{Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14};
-
-CoaxialSettings settings_of(const Sym6& axis, Form form = Form::coupled) {
-  CoaxialSettings settings;
-  settings.choice.form = form;
-  settings.tolerance = {1e-10, 1e-14};
-  settings.axis = axis;
-  return settings;
-}
-
-Sym6 times(double a, const Sym6& x) {
-  Sym6 result;
-  for (std::size_t i = 0; i < 6; ++i) result[i] = a * x[i];
-  return result;
-}
-Sym6 sum(const Sym6& x, const Sym6& y) {
-  Sym6 result;
-  for (std::size_t i = 0; i < 6; ++i) result[i] = x[i] + y[i];
-  return result;
-}
-/// So much strain along the deviator of an axis, and so much of volume.
-Sym6 strain_along(const Sym6& axis, double eps_vol, double eps_dev) {
-  const double mean = trace(axis) / 3;
-  Sym6 deviator = axis;
-  for (std::size_t i = 0; i < 3; ++i) deviator[i] -= mean;
-  return sum(times(eps_vol / 3, {1, 1, 1, 0, 0, 0}), times(eps_dev / deviator_magnitude(deviator), deviator));
-}
-Sym6 product(const Matrix6& matrix, const Sym6& x) {
-  Sym6 result{};
-  for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = 0; j < 6; ++j) result[i] += matrix[6 * i + j] * x[j];
-  return result;
-}
-void expect_near(const Sym6& a, const Sym6& b, double tolerance) {
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << i;
-}
-
-/// A point with its law, from nu = 0.711.
-struct Host {
-  CoaxialLaw law;
-  CoaxialState state;
-  CoaxialLaw::Workspace workspace;
-  Sym6 stress{};
-  Matrix6 tangent{};
-
-  explicit Host(const CoaxialSettings& settings)
-      : law(thesis(), settings), state(law.start(Start{0.711, {}, {}, {}, {}, {}}).state) {}
-  Status take(const Sym6& increment) { return law.update(state, increment, workspace, stress, &tangent); }
-};
-
-/// A path that reverses, compresses and releases, along an axis.
-std::vector<Sym6> path_along(const Sym6& axis) {
-  std::vector<Sym6> path;
-  for (const auto& [v, e] :
-       {std::pair{0.0, 0.004}, {0.0, 0.01}, {0.001, 0.002}, {0.0, -0.003}, {-0.002, 0.0}, {0.001, -0.02}})
-    path.push_back(strain_along(axis, v, e));
-  return path;
-}
 
 TEST(Coaxial, StressAlongTheAxis) {
   for (const Sym6& axis : {d2, uni, shear_xy, general}) {
@@ -180,87 +119,6 @@ TEST(Coaxial, SimpleShear) {
   EXPECT_NEAR(host.stress[5], s.sigma_dev / std::sqrt(3), 1e-16);
   EXPECT_NEAR(host.stress[0], s.P, 1e-16);
   EXPECT_EQ(host.stress[3], 0);
-}
-
-/// Every number of the tangent along `direction` against the forward difference of the stress.
-void expect_slopes(const Host& begin, const Sym6& increment, const Sym6& direction, double size) {
-  Host host = begin;
-  ASSERT_FALSE(host.take(increment).failed());
-  const Sym6 slopes = product(host.tangent, direction);
-  for (std::size_t i = 0; i < 6; ++i) {
-    const auto f = [&](double x) {
-      Host moved = begin;
-      EXPECT_FALSE(moved.take(sum(increment, times(x, direction))).failed());
-      return moved.stress[i];
-    };
-    if (std::abs(slopes[i]) > 1e-12)
-      expect_v_shape(f, 0, slopes[i], size);
-    else
-      EXPECT_NEAR(f(size), f(0), 1e-12);
-  }
-}
-
-TEST(Coaxial, TangentIsTheSlopeAlongTheAxisAndOfVolume) {
-  for (const Form form : {Form::reduced, Form::coupled})
-    for (const Sym6& axis : {d2, general}) {
-      SCOPED_TRACE(name_of(form));
-      CoaxialSettings settings = settings_of(axis, form);
-      settings.tolerance = {1e-6, 1e-9};  // one step: what the tangent differentiates
-      Host host(settings);
-      for (const Sym6& increment : path_along(axis)) {
-        if (deviator_magnitude(increment) > 1e-6) {  // at 0 shear begins either way
-          expect_slopes(host, increment, strain_along(axis, 1, 0), 1e-3);
-          expect_slopes(host, increment, strain_along(axis, 0, 1), 1e-3);
-          expect_slopes(host, increment, strain_along(axis, 1, -0.5), 1e-3);
-        }
-        ASSERT_FALSE(host.take(increment).failed());
-      }
-    }
-}
-
-TEST(Coaxial, TheProjectedTangentIsTheSlopeInEveryDirection) {
-  for (const bool engineering : {false, true}) {
-    CoaxialSettings settings = settings_of(general);
-    settings.tolerance = {1e-6, 1e-9};
-    settings.coaxial_tolerance = 1;
-    settings.projected_tangent = true;
-    settings.notation.engineering_shear = engineering;
-    Host host(settings);
-    ASSERT_FALSE(host.take({0.002, -0.003, 0.001, 0.002, 0.001, 0.003}).failed());
-    const Sym6 increment{0.002, -0.003, 0.0015, 0.002, 0.001, 0.003};
-    for (std::size_t j = 0; j < 6; ++j) {
-      Sym6 unit{};
-      unit[j] = 1;
-      expect_slopes(host, increment, unit, 1e-3);
-    }
-  }
-}
-
-TEST(Coaxial, OffTheAxisTheTangentIsIsotropicShear) {
-  constexpr Sym6 off_d2{0.1, 0.1, -0.2, 0.4, -0.7, 0.5};  // no projection on (-1, 1, 0)
-  for (const Form form : forms) {
-    Host host(settings_of(d2, form));
-    for (const Sym6& increment : path_along(d2)) ASSERT_FALSE(host.take(increment).failed());
-    const Law law = make_law(thesis(), form);
-    const double K = isotropic_shear_stiffness(law, host.state.point);
-    EXPECT_GT(K, 0.01);
-    expect_near(product(host.tangent, off_d2), times(K, off_d2), 1e-14);
-    CoaxialSettings settings = settings_of(d2, form);
-    settings.projected_tangent = true;
-    Host projected(settings);
-    projected.state = host.state;
-    ASSERT_FALSE(projected.take({}).failed());
-    expect_near(product(projected.tangent, off_d2), {}, 1e-15);
-  }
-}
-
-TEST(Coaxial, IsotropicShearIsHowAnIsotropicPointBegins) {
-  for (const Form form : forms) {
-    Host host(settings_of(d2, form));
-    const double K = isotropic_shear_stiffness(make_law(thesis(), form), host.state.point);
-    ASSERT_FALSE(host.take(strain_along(d2, 0, 1e-9)).failed());
-    EXPECT_NEAR(host.state.point.sigma_dev, 1e-9 * K, 1e-6 * 1e-9 * K) << name_of(form);
-  }
 }
 
 TEST(Coaxial, AnotherAxisIsRefused) {
