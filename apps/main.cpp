@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "grainlaw/apps/commands.hpp"
 #include "grainlaw/apps/terminal.hpp"
@@ -38,6 +38,8 @@ constexpr auto examples =
     "  grainlaw probe out/d2/snapshots.h5 -o moduli.csv          small-strain moduli of packings\n"
     "  grainlaw export out/d2/snapshots.h5 -o d2.vtp             a packing and its force chains, for "
     "ParaView\n"
+    "  grainlaw replay failed.json                               an increment of the law that failed in a "
+    "host\n"
     "File formats: docs/formats.md. Every command at length: docs/commands.md.\n"
     "Exit status: 0 well; 1 a test or an integration failed; 2 bad input or a full disk; 130 interrupted.";
 
@@ -60,9 +62,10 @@ int run_command_line(int argc, char** argv) {
   program.footer(examples);
   program.set_version_flag("--version", version_text(), "version, commit, compiler and libraries");
   program.require_subcommand(1);
-  const std::array<Action, 9> actions{add_calibrate(program), add_simulate(program), add_predict(program),
-                                      add_fit(program),       add_polish(program),   add_report(program),
-                                      add_bench(program),     add_export(program),   add_probe(program)};
+  const std::vector<Action> actions{add_calibrate(program), add_simulate(program), add_predict(program),
+                                    add_fit(program),       add_polish(program),   add_report(program),
+                                    add_bench(program),     add_export(program),   add_probe(program),
+                                    add_replay(program)};
   const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
   const auto is_unknown = [&](const std::string& name) {
     return std::none_of(commands.begin(), commands.end(),
@@ -70,7 +73,7 @@ int run_command_line(int argc, char** argv) {
   };
   if (argc > 1 && argv[1][0] != '-' && is_unknown(argv[1]))
     return complain_usage(program, fmt::format("unknown command \"{}\"; known are calibrate, simulate, "
-                                               "predict, fit, polish, report, probe, export, bench",
+                                               "predict, fit, polish, report, probe, export, replay, bench",
                                                argv[1]));
   try {
     program.parse(argc, argv);

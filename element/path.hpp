@@ -42,6 +42,9 @@ using StrainTensor = Sym6;
 /// Start of a path; what is not given comes from the parameter set (law) or is measured (DEM).
 struct Start {
   std::optional<double> nu, P, sigma_dev, F_dev, phi_J, phi_max;
+
+  /// Reads and checks a `start` object; see docs/formats.md.
+  static Start read(Reader reader);
 };
 
 /// One straight stretch of a path as written, before its targets are known in strain.

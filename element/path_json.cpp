@@ -364,17 +364,22 @@ std::string name_of(Profile profile) {
   return "";
 }
 
+Start Start::read(Reader reader) {
+  Start start;
+  start.nu = reader.maybe_number("nu", inside(0, 1));
+  start.P = reader.maybe_number("P", between(0, largest_stress));
+  start.sigma_dev = reader.maybe_number("sigma_dev", between(-largest_stress, largest_stress));
+  start.F_dev = reader.maybe_number("F_dev", between(-largest_stress, largest_stress));
+  start.phi_J = reader.maybe_number("phi_J", inside(0, 1));
+  start.phi_max = reader.maybe_number("phi_max", inside(0, 1));
+  reader.finish();
+  return start;
+}
+
 Path Path::read(Reader reader) {
   Path path;
   path.file = reader.file();
-  Reader start = reader.object_or_empty("start");
-  path.start.nu = start.maybe_number("nu", inside(0, 1));
-  path.start.P = start.maybe_number("P", between(0, largest_stress));
-  path.start.sigma_dev = start.maybe_number("sigma_dev", between(-largest_stress, largest_stress));
-  path.start.F_dev = start.maybe_number("F_dev", between(-largest_stress, largest_stress));
-  path.start.phi_J = start.maybe_number("phi_J", inside(0, 1));
-  path.start.phi_max = start.maybe_number("phi_max", inside(0, 1));
-  start.finish();
+  path.start = Start::read(reader.object_or_empty("start"));
   path.segments = read_segments(reader);
   reader.finish();
   if (path.start.nu) path.nominal_legs(*path.start.nu);  // targets checked before any work starts

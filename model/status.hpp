@@ -8,14 +8,15 @@ namespace grainlaw::model {
 
 struct Status {
   enum class Code {
-    ok,        ///< the end was reached
-    unjammed,  ///< the end was reached, and the point carries no stress there: P = 0
-    failed     ///< the integration stopped; the state is that of the last row
+    ok,          ///< the end was reached
+    unjammed,    ///< the end was reached, and the point carries no stress there: P = 0
+    failed,      ///< the integration stopped; the state is that of the last row
+    not_coaxial  ///< the strain has another axis than the point, which has not moved
   };
   Code code = Code::ok;
   std::string message;
 
-  bool failed() const { return code == Code::failed; }
+  bool failed() const { return code == Code::failed || code == Code::not_coaxial; }
 };
 
 inline std::string name_of(Status::Code code) {
@@ -26,6 +27,8 @@ inline std::string name_of(Status::Code code) {
       return "unjammed";
     case Status::Code::failed:
       return "failed";
+    case Status::Code::not_coaxial:
+      return "not_coaxial";
   }
   return "";
 }

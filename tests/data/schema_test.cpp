@@ -13,6 +13,7 @@
 #include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/element/record.hpp"
+#include "grainlaw/model/replay.hpp"
 
 namespace grainlaw::tests {
 namespace {
@@ -110,9 +111,14 @@ TEST(Schema, Observers) {
   }
 }
 
-TEST(Schema, ColumnsOfATableOfModuli) {
-  EXPECT_EQ(keys(schema("moduli")["properties"]), moduli_columns());
+TEST(Schema, KeysOfAReplay) {
+  model::Replay replay;
+  const Json file = schema("replay"), written = replay.to_json();
+  EXPECT_EQ(keys(file["properties"]), keys(written));
+  EXPECT_EQ(keys(file["properties"]["state"]["properties"]), keys(written["state"]));
 }
+
+TEST(Schema, ColumnsOfATableOfModuli) { EXPECT_EQ(keys(schema("moduli")["properties"]), moduli_columns()); }
 
 TEST(Schema, ColumnsOfARecord) {
   const Json file = schema("record");

@@ -16,6 +16,7 @@
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/model/parameters.hpp"
 #include "grainlaw/model/predict.hpp"
+#include "grainlaw/model/replay.hpp"
 #include "mutants.hpp"
 
 namespace {
@@ -35,6 +36,16 @@ void write(const fs::path& dir, const std::string& kind, const fs::path& example
   write_file(dir / (kind + "-" + example.stem().string() + ".json"), json.dump(2));
 }
 
+/// An increment that a host would keep because it failed.
+Json refused_increment(const model::ParameterSet& parameters) {
+  model::CoaxialSettings settings;
+  settings.axis = {-1, 1, 0, 0, 0, 0};
+  const auto begin = model::CoaxialLaw(parameters, settings).start(Start{0.711, {}, {}, {}, {}, {}});
+  return model::Replay{parameters,     settings, begin.state, {0, 0, 1e-3, 0, 0, 0}, false, "not_coaxial",
+                       "another axis", "0.1.0",  "unknown"}
+      .to_json();
+}
+
 void write_examples(const fs::path& data, const fs::path& dir) {
   const auto parameters = model::ParameterSet::load(data / "thesis" / "parameters.json");
   for (const auto& file : examples(data / "paths")) {
@@ -48,6 +59,7 @@ void write_examples(const fs::path& data, const fs::path& dir) {
     write(dir, "campaign", file, calibrate::Campaign::load(file).to_json());
   for (const auto& file : examples(data / "thesis"))
     write(dir, "parameters", file, model::ParameterSet::load(file).to_json());
+  write(dir, "replay", "d2.json", refused_increment(parameters));
 }
 
 /// Two element tests with few grains, the second from a snapshot of the first.
@@ -89,6 +101,9 @@ void write_mutants(const fs::path& data, const fs::path& documents, const fs::pa
   for (const char* mode : {"uni", "d2", "d3"}) one_row["isotropic"].erase(mode);
   for (const char* quantity : {"beta_s", "F_max", "beta_F"}) one_row["shear"].erase(quantity);
   write("parameters", {one_row}, [](Reader reader) { model::ParameterSet::read(reader); });
+  Json replay = refused_increment(model::ParameterSet::load(data / "thesis" / "parameters.json"));
+  for (const char* group : {"isotropic", "shear", "moduli", "memory"}) replay["parameters"].erase(group);
+  write("replay", {replay}, [](Reader reader) { model::Replay::read(reader); });
 }
 
 }  // namespace
