@@ -19,7 +19,9 @@ struct Term {
   bool Terms::*flag;
   std::initializer_list<Form> forms;
 };
-const Term all_terms[] = {{"energy", &Terms::energy, {Form::coupled}}};
+const Term all_terms[] = {
+    {"axial", &Terms::axial, {Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14}},
+    {"energy", &Terms::energy, {Form::coupled}}};
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
@@ -133,13 +135,13 @@ BasicLaws<P> laws_of(const ParameterSet& parameters, const Choice& choice, const
     laws.g3 = read(parameters.moduli->g3);
   else
     laws.g3 = fabric_size_factor(parameters.material.w);
-  laws.s_max = saturation_of(parameters.saturation("s_max", who), read);
-  laws.F_max = saturation_of(parameters.saturation("F_max", who), read);
-  laws.beta_F = saturation_of(parameters.saturation("beta_F", who), read);
+  laws.s_max = saturation_of(parameters.saturation("s_max", who, choice.terms.axial), read);
+  laws.F_max = saturation_of(parameters.saturation("F_max", who, choice.terms.axial), read);
+  laws.beta_F = saturation_of(parameters.saturation("beta_F", who, choice.terms.axial), read);
   if (choice.form == Form::coupled || choice.form == Form::coupled_3_14)
     laws.moduli = moduli_of(parameters.need_moduli(who), read);
   else
-    laws.beta_s = saturation_of(parameters.saturation("beta_s", who), read);
+    laws.beta_s = saturation_of(parameters.saturation("beta_s", who, choice.terms.axial), read);
   if (choice.form == Form::coupled_3_14 && parameters.moduli->a_I.value == 0)
     throw Error(parameters.file, "moduli.a_I.value", "must not be 0 for " + who + ", whose A is a_I B F_dev");
   add_terms(laws, parameters, choice.terms, who, read);

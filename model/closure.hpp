@@ -23,6 +23,7 @@ Form form_of(const std::string& name);
 
 /// Terms past the thesis that a form may take, off unless asked for.
 struct Terms {
+  bool axial = false;  ///< s_max, F_max and their rates of axisymmetric strain (group shear_axial), not of D2
   bool energy = false;  ///< A1 and A2 from one energy (moduli.a_F, a_s) in place of Eqs. 4.12 and 4.13
   bool operator==(const Terms&) const = default;
 };

@@ -132,6 +132,13 @@ ShearLaws read_shear(Reader reader) {
   return shear;
 }
 
+Json shear_json(const ShearLaws& shear) {
+  Json json = Json::object();
+  for (const auto& [quantity, member] : quantities)
+    if (shear.*member) json[quantity] = group_json(*(shear.*member));
+  return json;
+}
+
 MemoryLaws read_memory(Reader reader) {
   auto memory = read_keys<MemoryLaws>(reader);
   if (auto object = maybe_object(reader, "phi_cr")) memory.phi_cr = read_parameter(*object, inside(0, 1));
@@ -199,6 +206,7 @@ ParameterSet ParameterSet::read(Reader reader) {
   set.closure = read_closure(reader.object("closure"));
   set.isotropic = read_isotropic(reader.object_or_empty("isotropic"));
   if (auto object = maybe_object(reader, "shear")) set.shear = read_shear(*object);
+  if (auto object = maybe_object(reader, "shear_axial")) set.shear_axial = read_shear(*object);
   if (auto object = maybe_object(reader, "moduli")) set.moduli = read_moduli(*object);
   if (auto object = maybe_object(reader, "memory")) set.memory = read_memory(*object);
   reader.finish();
@@ -213,11 +221,8 @@ Json ParameterSet::to_json() const {
   json["isotropic"] = Json::object();
   for (const auto& mode : modes)
     if (isotropic.contains(mode)) json["isotropic"][mode] = group_json(isotropic.at(mode));
-  if (shear) {
-    json["shear"] = Json::object();
-    for (const auto& [quantity, member] : quantities)
-      if ((*shear).*member) json["shear"][quantity] = group_json(*((*shear).*member));
-  }
+  if (shear) json["shear"] = shear_json(*shear);
+  if (shear_axial) json["shear_axial"] = shear_json(*shear_axial);
   if (moduli) {
     json["moduli"] = group_json(*moduli);
     if (moduli->a_F) json["moduli"]["a_F"] = parameter_json(*moduli->a_F);
@@ -262,11 +267,14 @@ const PackingLaw& ParameterSet::packing(const std::string& mode, const std::stri
   return row->second;
 }
 
-const SaturationLaw& ParameterSet::saturation(const std::string& quantity, const std::string& why) const {
-  if (!shear) throw Error(file, "shear", "is missing; " + why + " needs it");
+const SaturationLaw& ParameterSet::saturation(const std::string& quantity, const std::string& why,
+                                              bool axial) const {
+  const std::optional<ShearLaws>& laws = axial ? shear_axial : shear;
+  const std::string group = axial ? "shear_axial" : "shear";
+  if (!laws) throw Error(file, group, "is missing; " + why + " needs it");
   for (const auto& [name_, member] : quantities)
-    if (quantity == name_ && (*shear).*member) return *((*shear).*member);
-  throw Error(file, "shear." + quantity, "is missing; " + why + " needs it");
+    if (quantity == name_ && (*laws).*member) return *((*laws).*member);
+  throw Error(file, group + "." + quantity, "is missing; " + why + " needs it");
 }
 
 const ModuliLaws& ParameterSet::need_moduli(const std::string& why) const {

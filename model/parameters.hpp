@@ -81,7 +81,8 @@ struct ParameterSet {
   Material material;
   Closure closure;
   std::map<std::string, PackingLaw> isotropic;  ///< by mode: iso, uni, d2, d3
-  std::optional<ShearLaws> shear;
+  std::optional<ShearLaws> shear;               ///< of D2
+  std::optional<ShearLaws> shear_axial;         ///< past the thesis: of axisymmetric strain (D3, UNI)
   std::optional<ModuliLaws> moduli;
   std::optional<MemoryLaws> memory;
   std::string file;  ///< where it was read from, for error messages; may be empty
@@ -99,7 +100,8 @@ struct ParameterSet {
   /// The row or group asked for. Throws Error naming file, group and why it is needed ("... needs
   /// isotropic.d2").
   const PackingLaw& packing(const std::string& mode, const std::string& why) const;
-  const SaturationLaw& saturation(const std::string& quantity, const std::string& why) const;
+  const SaturationLaw& saturation(const std::string& quantity, const std::string& why,
+                                  bool axial = false) const;
   const ModuliLaws& need_moduli(const std::string& why) const;
   /// moduli.a_F and moduli.a_s.
   std::pair<const Parameter&, const Parameter&> need_energy(const std::string& why) const;
