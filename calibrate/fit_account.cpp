@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "grainlaw/calibrate/fit_moduli_account.hpp"
+#include "grainlaw/calibrate/fit_volumetric_account.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::calibrate {
@@ -304,6 +305,7 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
       fit_density(account, mode, quantity, nu_c_error, reference, selection);
   }
   fit_moduli_of(account, folder, reference);
+  fit_volumetric_of(account, folder, selection);
   return account;
 }
 

@@ -12,6 +12,7 @@
 #include "grainlaw/calibrate/fit_moduli.hpp"
 #include "grainlaw/calibrate/fit_parameters.hpp"
 #include "grainlaw/calibrate/fit_selection.hpp"
+#include "grainlaw/calibrate/fit_volumetric.hpp"
 
 namespace grainlaw::calibrate {
 
@@ -28,6 +29,8 @@ struct Account {
   bool nu_c_fitted = false;
   std::optional<ModuliFit> moduli;  ///< none where no test has a table of moduli
   bool moduli_nu_c_fitted = false;  ///< the nu_c that its B counts from is that of the d2 tests
+
+  std::optional<VolumetricFit> volumetric;  ///< none where no sheared packing changed its volume alone
 
   Json to_json() const;
 };

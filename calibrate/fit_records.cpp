@@ -94,6 +94,7 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
   out.parameters.shear = shear_laws(account, "d2", reference);
   if (account.density.contains("d3")) out.parameters.shear_axial = shear_laws(account, "d3", reference);
   out.parameters.moduli = moduli(account, reference);
+  if (account.volumetric) out.parameters.volumetric = volumetric_laws(*account.volumetric, reference);
   out.parameters.memory = reference.memory();
   out.parameters.closure = {"iso", out.parameters.isotropic.contains("d2") ? "d2" : "iso", false};
   out.fits = account.to_json();

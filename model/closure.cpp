@@ -21,7 +21,8 @@ struct Term {
 };
 const Term all_terms[] = {
     {"axial", &Terms::axial, {Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14}},
-    {"energy", &Terms::energy, {Form::coupled}}};
+    {"energy", &Terms::energy, {Form::coupled}},
+    {"volumetric", &Terms::volumetric, {Form::reduced, Form::coupled}}};
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
@@ -117,6 +118,10 @@ void add_terms(BasicLaws<P>& laws, const ParameterSet& parameters, const Terms& 
     const auto& [a_F, a_s] = parameters.need_energy(who);
     laws.moduli.a_F = read(a_F);
     laws.moduli.a_s = read(a_s);
+  }
+  if (terms.volumetric) {
+    const VolumetricLaws& v = parameters.need_volumetric(who);
+    laws.volumetric = {read(v.compression), read(v.decompression)};
   }
 }
 

@@ -57,6 +57,13 @@ const std::vector<Key<ModuliLaws>>& keys(const ModuliLaws&) {
   return list;
 }
 
+const std::vector<Key<VolumetricLaws>>& keys(const VolumetricLaws&) {
+  static const std::vector<Key<VolumetricLaws>> list{
+      {"compression", &VolumetricLaws::compression, any_number()},
+      {"decompression", &VolumetricLaws::decompression, any_number()}};
+  return list;
+}
+
 const std::vector<Key<MemoryLaws>>& keys(const MemoryLaws&) {
   static const std::vector<Key<MemoryLaws>> list{
       {"phi_SJ", &MemoryLaws::phi_SJ, inside(0, 1)},   {"mu", &MemoryLaws::mu, above(0)},
@@ -208,6 +215,7 @@ ParameterSet ParameterSet::read(Reader reader) {
   if (auto object = maybe_object(reader, "shear")) set.shear = read_shear(*object);
   if (auto object = maybe_object(reader, "shear_axial")) set.shear_axial = read_shear(*object);
   if (auto object = maybe_object(reader, "moduli")) set.moduli = read_moduli(*object);
+  if (auto object = maybe_object(reader, "volumetric")) set.volumetric = read_group<VolumetricLaws>(*object);
   if (auto object = maybe_object(reader, "memory")) set.memory = read_memory(*object);
   reader.finish();
   return set;
@@ -228,6 +236,7 @@ Json ParameterSet::to_json() const {
     if (moduli->a_F) json["moduli"]["a_F"] = parameter_json(*moduli->a_F);
     if (moduli->a_s) json["moduli"]["a_s"] = parameter_json(*moduli->a_s);
   }
+  if (volumetric) json["volumetric"] = group_json(*volumetric);
   if (memory) {
     json["memory"] = group_json(*memory);
     if (memory->phi_cr) json["memory"]["phi_cr"] = parameter_json(*memory->phi_cr);
@@ -286,6 +295,11 @@ std::pair<const Parameter&, const Parameter&> ParameterSet::need_energy(const st
   const ModuliLaws& laws = need_moduli(why);
   if (!laws.a_F) throw Error(file, "moduli.a_F", "is missing; " + why + " needs it");
   return {*laws.a_F, *laws.a_s};
+}
+
+const VolumetricLaws& ParameterSet::need_volumetric(const std::string& why) const {
+  if (!volumetric) throw Error(file, "volumetric", "is missing; " + why + " needs it");
+  return *volumetric;
 }
 
 const MemoryLaws& ParameterSet::need_memory(const std::string& why) const {

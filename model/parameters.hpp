@@ -54,6 +54,11 @@ struct ModuliLaws {
   Moduli values() const;
 };
 
+/// volumetric: -d ln F_dev/d ln nu under isotropic strain, past the thesis, which neglects it.
+struct VolumetricLaws {
+  Parameter compression, decompression;
+};
+
 /// memory: Eqs. 5.1 to 5.13.
 struct MemoryLaws {
   Parameter phi_SJ, mu, beta, alpha_max, alpha_phi, alpha, eps0, eps0_R;
@@ -84,6 +89,7 @@ struct ParameterSet {
   std::optional<ShearLaws> shear;               ///< of D2
   std::optional<ShearLaws> shear_axial;         ///< past the thesis: of axisymmetric strain (D3, UNI)
   std::optional<ModuliLaws> moduli;
+  std::optional<VolumetricLaws> volumetric;
   std::optional<MemoryLaws> memory;
   std::string file;  ///< where it was read from, for error messages; may be empty
 
@@ -105,6 +111,7 @@ struct ParameterSet {
   const ModuliLaws& need_moduli(const std::string& why) const;
   /// moduli.a_F and moduli.a_s.
   std::pair<const Parameter&, const Parameter&> need_energy(const std::string& why) const;
+  const VolumetricLaws& need_volumetric(const std::string& why) const;
   const MemoryLaws& need_memory(const std::string& why) const;
 };
 
