@@ -252,11 +252,18 @@ std::vector<NamedParameter> ParameterSet::named() const {
   };
   for (const auto& mode : modes)
     if (isotropic.contains(mode)) add("isotropic." + mode, isotropic.at(mode));
-  if (shear) {
+  const auto add_shear = [&](const std::string& group, const std::optional<ShearLaws>& laws) {
     for (const auto& [quantity, member] : quantities)
-      if ((*shear).*member) add(std::string("shear.") + quantity, *((*shear).*member));
+      if (laws && (*laws).*member) add(group + "." + quantity, *((*laws).*member));
+  };
+  add_shear("shear", shear);
+  add_shear("shear_axial", shear_axial);
+  if (moduli) {
+    add("moduli", *moduli);
+    if (moduli->a_F) list.push_back({"moduli.a_F", &*moduli->a_F, any_number()});
+    if (moduli->a_s) list.push_back({"moduli.a_s", &*moduli->a_s, any_number()});
   }
-  if (moduli) add("moduli", *moduli);
+  if (volumetric) add("volumetric", *volumetric);
   if (memory) {
     add("memory", *memory);
     if (memory->phi_cr) list.push_back({"memory.phi_cr", &*memory->phi_cr, inside(0, 1)});
