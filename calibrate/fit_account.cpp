@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "grainlaw/calibrate/fit_moduli_account.hpp"
+#include "grainlaw/calibrate/fit_volumetric_account.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::calibrate {
@@ -182,14 +183,18 @@ RunValue run_value(const ShearCurve& curve, const FitEstimate& e) {
   return {curve.test, curve.group, curve.nu, e.value, *e.stderr_, false};
 }
 
+/// Of the parameter set.
+std::string shear_group(const std::string& mode) { return mode == "d2" ? "shear" : "shear_axial"; }
+
 /// The rate, where the run determines it.
 void take_rate(Account& account, const TestRecord& test, const ShearCurve& curve, const FitEstimate& beta,
                ShearQuantity target) {
   if (is_result(beta)) {
-    account.run_values[target].push_back(run_value(curve, beta));
+    account.run_values[test.mode][target].push_back(run_value(curve, beta));
   } else {
     account.left_out.push_back(
-        {test.name, test.role, "shear." + name_of(target) + ": not determined by this test: " + beta.reason});
+        {test.name, test.role,
+         shear_group(test.mode) + "." + name_of(target) + ": not determined by this test: " + beta.reason});
   }
 }
 
@@ -197,7 +202,7 @@ void take_rate(Account& account, const TestRecord& test, const ShearCurve& curve
 /// the mean of what the run has reached.
 void take_saturation(Account& account, const TestRecord& test, const ShearCurve& curve, const FitResult& fit,
                      ShearQuantity target, const Selection& selection) {
-  std::vector<RunValue>& values = account.run_values[target];
+  std::vector<RunValue>& values = account.run_values[test.mode][target];
   if (is_result(fit["max"]) && is_result(fit["beta"])) {
     values.push_back(run_value(curve, fit["max"]));
   } else if (const auto mean = steady_mean(curve, selection)) {
@@ -205,12 +210,13 @@ void take_saturation(Account& account, const TestRecord& test, const ShearCurve&
   } else {
     const std::string open = is_result(fit["max"]) ? fit["beta"].reason : fit["max"].reason;
     account.left_out.push_back({test.name, test.role,
-                                "shear." + name_of(target) + ": not determined by this test: " + open +
+                                shear_group(test.mode) + "." + name_of(target) +
+                                    ": not determined by this test: " + open +
                                     ", and it has too few rows of a steady state"});
   }
 }
 
-/// Fits s_dev and F_dev of one shear test; d2 tests of role fit give a point each of the laws over volume
+/// Fits s_dev and F_dev of one shear test; one of role fit gives a point each of its mode's laws over volume
 /// fraction.
 void fit_shear_test(Account& account, const TestRecord& test, const Selection& selection) {
   const std::pair<const char*, std::pair<ShearQuantity, ShearQuantity>> fits[] = {
@@ -225,44 +231,47 @@ void fit_shear_test(Account& account, const TestRecord& test, const Selection& s
     }
     account.entries.push_back(run_entry(test, quantity, curve, counted, selection));
     const FitResult& r = account.entries.back().result;
-    if (test.role != Role::fit || test.mode != "d2") continue;
+    if (test.role != Role::fit) continue;
     take_saturation(account, test, curve, r, gives.first, selection);
     take_rate(account, test, curve, r["beta"], gives.second);
   }
 }
 
 /// Which number each run gives to a law over volume fraction, in words.
-std::string density_rule(const std::vector<RunValue>& values, bool rate, const Selection& selection) {
-  if (rate) return "beta of each d2 test whose own fit determines it, all of one weight";
+std::string density_rule(const std::string& mode, const std::vector<RunValue>& values, bool rate,
+                         const Selection& selection) {
+  if (rate) return "beta of each " + mode + " test whose own fit determines it, all of one weight";
   std::string means;
   for (const RunValue& v : values) {
     if (v.steady_mean) means += (means.empty() ? "" : ", ") + v.test;
   }
-  return "max of each d2 test whose own fit determines beta and max, else " + steady_mean_rule(selection) +
-         " (" + (means.empty() ? "no test" : means) + "); weighted by its standard error";
+  return "max of each " + mode + " test whose own fit determines beta and max, else " +
+         steady_mean_rule(selection) + " (" + (means.empty() ? "no test" : means) +
+         "); weighted by its standard error";
 }
 
-void fit_density(Account& account, ShearQuantity quantity, double nu_c_error, const Reference& reference,
-                 const Selection& selection) {
+void fit_density(Account& account, const std::string& mode, ShearQuantity quantity, double nu_c_error,
+                 const Reference& reference, const Selection& selection) {
   const bool rate = quantity == ShearQuantity::beta_s || quantity == ShearQuantity::beta_F;
   const bool stress = quantity == ShearQuantity::s_max || quantity == ShearQuantity::beta_s;
-  const std::vector<RunValue>& values = account.run_values[quantity];
+  const std::vector<RunValue>& values = account.run_values[mode][quantity];
+  // The thesis has these laws of D2 alone.
+  const KnownValues known = mode == "d2" ? reference.shear(name_of(quantity)) : KnownValues{};
   FitEntry entry;
-  entry.name = "shear." + name_of(quantity);
+  entry.name = shear_group(mode) + "." + name_of(quantity);
   entry.law = "Q = Q_max + Q_v exp[−α (ν/ν_c − 1)] (Eq. 2.20)";
-  entry.mode = "d2";
+  entry.mode = mode;
   entry.x_name = "nu";
   entry.x_label = nu_label;
   entry.y_name = name_of(quantity);
   entry.y_label =
       std::string(rate ? "rate β of the " : "saturation of the ") + (stress ? "stress ratio" : "fabric");
-  entry.selection = density_rule(values, rate, selection);
-  entry.thesis = reference.thesis_shear(name_of(quantity));
-  entry.problem =
-      density_problem(quantity, values, account.nu_c, nu_c_error, reference.shear(name_of(quantity)));
+  entry.selection = density_rule(mode, values, rate, selection);
+  if (mode == "d2") entry.thesis = reference.thesis_shear(name_of(quantity));
+  entry.problem = density_problem(quantity, values, account.nu_c, nu_c_error, known);
   entry.result = fit(entry.problem);
   entry.curve_from = account.nu_c;
-  account.density[quantity] = entry.result;
+  account.density[mode][quantity] = entry.result;
   account.entries.push_back(std::move(entry));
 }
 
@@ -290,9 +299,13 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
   for (const TestRecord& test : folder.tests) {
     if (is_shear(test.mode) && !test.sheared_along) fit_shear_test(account, test, selection);
   }
-  for (const ShearQuantity quantity : shear_quantities)
-    fit_density(account, quantity, nu_c_error, reference, selection);
+  for (const char* mode : {"d2", "d3"}) {
+    if (mode == std::string("d3") && !account.run_values.contains(mode)) continue;
+    for (const ShearQuantity quantity : shear_quantities)
+      fit_density(account, mode, quantity, nu_c_error, reference, selection);
+  }
   fit_moduli_of(account, folder, reference);
+  fit_volumetric_of(account, folder, selection);
   return account;
 }
 

@@ -12,6 +12,7 @@
 #include "grainlaw/calibrate/fit_moduli.hpp"
 #include "grainlaw/calibrate/fit_parameters.hpp"
 #include "grainlaw/calibrate/fit_selection.hpp"
+#include "grainlaw/calibrate/fit_volumetric.hpp"
 
 namespace grainlaw::calibrate {
 
@@ -21,12 +22,15 @@ struct Account {
   std::map<std::string, PackingFit> packing;  ///< by mode, role fit only
   std::map<std::string, PackingFit> narrow;   ///< the same from narrow_P_min on, where that leaves out rows
   double narrow_P_min = 0;
-  std::map<ShearQuantity, FitResult> density;                 ///< Eq. 2.20 through the d2 tests of role fit
-  std::map<ShearQuantity, std::vector<RunValue>> run_values;  ///< what it was fitted to
+  /// Eq. 2.20 through the tests of role fit, by mode: d2 always, d3 where there are such tests.
+  std::map<std::string, std::map<ShearQuantity, FitResult>> density;
+  std::map<std::string, std::map<ShearQuantity, std::vector<RunValue>>> run_values;  ///< what it was fitted to
   double nu_c = 0;                                            ///< of Eq. 2.20: that of the isotropic pressure
   bool nu_c_fitted = false;
   std::optional<ModuliFit> moduli;  ///< none where no test has a table of moduli
   bool moduli_nu_c_fitted = false;  ///< the nu_c that its B counts from is that of the d2 tests
+
+  std::optional<VolumetricFit> volumetric;  ///< none where no sheared packing changed its volume alone
 
   Json to_json() const;
 };

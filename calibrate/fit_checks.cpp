@@ -68,8 +68,9 @@ Json pressure_slope(const Account& account) {
 
 /// By a straight line through the runs, not by Eq. 2.20: the slope must be negative by two standard errors.
 Json falls(const Account& account, ShearQuantity quantity) {
-  const auto values = account.run_values.find(quantity);
-  const Trend trend = values == account.run_values.end() ? Trend{} : trend_of(values->second);
+  const auto d2 = account.run_values.find("d2");
+  const bool any = d2 != account.run_values.end() && d2->second.contains(quantity);
+  const Trend trend = any ? trend_of(d2->second.at(quantity)) : Trend{};
   return check(name_of(quantity) + " falls with nu",
                "slope of a line: " + rounded(trend.slope, 3) + " ± " + rounded(trend.error, 3), trend.known,
                trend.slope < -2 * trend.error);

@@ -244,6 +244,13 @@ std::optional<ModuliLaws> moduli_laws(const ModuliFit& fit, const Reference& ref
   return law;
 }
 
+std::optional<model::VolumetricLaws> volumetric_laws(const VolumetricFit& fit, const Reference& reference) {
+  if (!fit.compression.ran || !fit.compression.determined()) return std::nullopt;
+  if (!fit.decompression.ran || !fit.decompression.determined()) return std::nullopt;
+  return model::VolumetricLaws{from_estimate(fit.compression["compression"], {}, reference, ""),
+                               from_estimate(fit.decompression["decompression"], {}, reference, "")};
+}
+
 std::optional<SaturationLaw> saturation_law(const FitResult& fit, const KnownValues& fallback,
                                             const KnownValues& thesis, const Reference& reference) {
   SaturationLaw law;

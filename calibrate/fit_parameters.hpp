@@ -9,6 +9,7 @@
 #include "grainlaw/calibrate/fit_moduli.hpp"
 #include "grainlaw/calibrate/fit_packing.hpp"
 #include "grainlaw/calibrate/fit_problem.hpp"
+#include "grainlaw/calibrate/fit_volumetric.hpp"
 #include "grainlaw/element/material.hpp"
 #include "grainlaw/model/parameters.hpp"
 
@@ -52,6 +53,8 @@ std::optional<model::PackingLaw> packing_law(const PackingFit& fit, const KnownV
                                              const KnownValues& thesis, const Reference& reference);
 /// Group moduli out of its fits; g3 is Eq. 3.8 for the records' own w.
 std::optional<model::ModuliLaws> moduli_laws(const ModuliFit& fit, const Reference& reference);
+/// Group volumetric out of its fits; none where the data do not determine both numbers.
+std::optional<model::VolumetricLaws> volumetric_laws(const VolumetricFit& fit, const Reference& reference);
 /// shear.QUANTITY out of its fit over volume fraction.
 std::optional<model::SaturationLaw> saturation_law(const FitResult& fit, const KnownValues& fallback,
                                                    const KnownValues& thesis, const Reference& reference);

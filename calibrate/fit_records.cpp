@@ -42,18 +42,20 @@ void set_row(model::ShearLaws& shear, ShearQuantity quantity,
   }
 }
 
-model::ShearLaws shear_laws(const Account& account, const Reference& reference) {
+/// Group shear from the fits of d2, shear_axial from those of d3.
+model::ShearLaws shear_laws(const Account& account, const std::string& mode, const Reference& reference) {
   model::ShearLaws shear;
-  const bool nu_c_fitted = account.nu_c_fitted;
+  const bool nu_c_fitted = account.nu_c_fitted, of_thesis = mode == "d2";
   for (const ShearQuantity quantity : shear_quantities) {
     const std::string name = name_of(quantity);
-    auto row = saturation_law(account.density.at(quantity), reference.shear(name),
-                              reference.thesis_shear(name), reference);
+    const FitResult& fit = account.density.at(mode).at(quantity);
+    auto row = saturation_law(fit, of_thesis ? reference.shear(name) : KnownValues{},
+                              of_thesis ? reference.thesis_shear(name) : KnownValues{}, reference);
     if (row && nu_c_fitted && row->nu_c.value == account.nu_c) {
       row->nu_c.source = "fit";
       row->nu_c.note = "nu_c of isotropic.iso";
     }
-    if (row && account.density.at(quantity)["Q_max"].determined && row->Q_max.source == "assumed") {
+    if (row && fit["Q_max"].determined && row->Q_max.source == "assumed") {
       row->Q_max.note = "held at 0, as in Table 2.2";
     }
     set_row(shear, quantity, row);
@@ -89,8 +91,10 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
     const auto row = packing_law(fit, reference.packing(mode), reference.thesis_packing(mode), reference);
     if (row) out.parameters.isotropic[mode] = *row;
   }
-  out.parameters.shear = shear_laws(account, reference);
+  out.parameters.shear = shear_laws(account, "d2", reference);
+  if (account.density.contains("d3")) out.parameters.shear_axial = shear_laws(account, "d3", reference);
   out.parameters.moduli = moduli(account, reference);
+  if (account.volumetric) out.parameters.volumetric = volumetric_laws(*account.volumetric, reference);
   out.parameters.memory = reference.memory();
   out.parameters.closure = {"iso", out.parameters.isotropic.contains("d2") ? "d2" : "iso", false};
   out.fits = account.to_json();

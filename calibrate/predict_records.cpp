@@ -16,7 +16,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr model::Form forms[] = {model::Form::reduced_closed, model::Form::reduced, model::Form::coupled};
+/// The thesis's forms, and the coupled one with every term past the thesis that the set has numbers for and
+/// the test can show.
+std::vector<model::Choice> choices_for(const TestRecord& test, const model::ParameterSet& parameters) {
+  std::vector<model::Choice> choices;
+  for (const model::Form form : {model::Form::reduced_closed, model::Form::reduced, model::Form::coupled})
+    choices.push_back({form, {}});
+  model::Terms terms;
+  terms.axial = (test.mode == "uni" || test.mode == "d3") && parameters.shear_axial.has_value();
+  terms.volumetric = test.mode == "uni" && parameters.volumetric.has_value();
+  terms.energy = parameters.moduli && parameters.moduli->a_F.has_value();
+  if (terms != model::Terms{}) choices.push_back({model::Form::coupled, terms});
+  return choices;
+}
+
 /// What a prediction and a record have in common and the law claims to know.
 const std::vector<std::string> compared{"P", "sigma_dev", "s_dev", "F_v", "F_dev", "C", "C_star", "f_NR"};
 
@@ -59,15 +72,16 @@ std::string in_words(const model::Status& status) {
   return model::name_of(status.code) + (status.message.empty() ? "" : ": " + status.message);
 }
 
-Json predict_one(const TestRecord& test, model::Form form, const model::ParameterSet& parameters,
+Json predict_one(const TestRecord& test, const model::Choice& choice, const model::ParameterSet& parameters,
                  const fs::path& dir) {
-  Json json{{"test", test.name}, {"mode", test.mode}, {"seed", nullptr}, {"form", model::name_of(form)}};
+  Json json{{"test", test.name}, {"mode", test.mode}, {"seed", nullptr}, {"form", model::name_of(choice)}};
   if (test.seed.find_first_not_of("0123456789") == std::string::npos) json["seed"] = std::stoll(test.seed);
   model::Prediction prediction;
   try {
     const Path path = path_of(test);
     model::PredictOptions options;
-    options.form = form;
+    options.form = choice.form;
+    options.terms = choice.terms;
     prediction = model::predict(parameters, path, model::samples_of(test.rows, path, test.nu_start), options);
     json["status"] = in_words(prediction.status);
   } catch (const Error& error) {
@@ -83,7 +97,7 @@ Json predict_one(const TestRecord& test, model::Form form, const model::Paramete
   json["file"] = nullptr;
   json["record"] = fs::relative(test.dir / "record.csv", dir).generic_string();
   if (!walked) return json;
-  const fs::path file = fs::path("predictions") / (test.name + "." + model::name_of(form) + ".csv");
+  const fs::path file = fs::path("predictions") / (test.name + "." + model::name_of(choice) + ".csv");
   prediction.record.write_csv(dir / file);
   json["file"] = file.generic_string();
   return json;
@@ -119,7 +133,8 @@ Json predict_records(const fs::path& dir, const model::ParameterSet& parameters)
   fs::create_directories(dir / "predictions");
   for (const TestRecord& test : folder.tests) {
     if (test.role != Role::predict) continue;
-    for (const model::Form form : forms) predictions.push_back(predict_one(test, form, parameters, dir));
+    for (const model::Choice& choice : choices_for(test, parameters))
+      predictions.push_back(predict_one(test, choice, parameters, dir));
   }
   Json out{{"parameters_digest", digest(parameters.to_json().dump(2) + "\n")}, {"predictions", predictions}};
   write_file(dir / "predictions.json", out.dump(2) + "\n");

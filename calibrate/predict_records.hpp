@@ -11,7 +11,8 @@
 
 namespace grainlaw::calibrate {
 
-/// For each record of role predict in `dir` (see read_records) and each form of the law: writes
+/// For each record of role predict in `dir` (see read_records) and each form of the law, the coupled one also
+/// with the terms past the thesis that the set has numbers for: writes
 /// predictions/TEST-sSEED.FORM.csv, with one row per row of the record, and at the end predictions.json,
 /// which is also returned (docs/fits.md lists its keys). The start is the record's volume fraction; every
 /// other start value comes from `parameters`. A form that the set or the path does not allow is listed with

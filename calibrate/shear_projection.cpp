@@ -31,9 +31,13 @@ StrainTensor projector(const StrainTensor& axis) {
 }  // namespace
 
 ShearColumn shear_column(const TestRecord& test, std::size_t leg, const std::string& quantity) {
+  return shear_column(test, SignConvention(test.legs).axis(leg), quantity);
+}
+
+ShearColumn shear_column(const TestRecord& test, const StrainTensor& axis, const std::string& quantity) {
   const bool of_stress = quantity == "s_dev";
   const Components& names = of_stress ? stress : fabric;
-  const StrainTensor along = projector(SignConvention(test.legs).axis(leg));
+  const StrainTensor along = projector(axis);
   if (!has_all(test.rows, names, along)) return {test.rows[quantity], false};
   ShearColumn column{std::vector<double>(test.rows.rows(), 0.0), true};
   for (std::size_t i = 0; i < column.values.size(); ++i) {

@@ -20,5 +20,7 @@ struct ShearColumn {
 /// Q is along that of the mode. Elsewhere the column adds the fluctuations of all six components and, near
 /// isotropy, jumps between plus and minus their size; the projection fluctuates about its own mean.
 ShearColumn shear_column(const TestRecord& test, std::size_t leg, const std::string& quantity);
+/// The same on a given axis.
+ShearColumn shear_column(const TestRecord& test, const StrainTensor& axis, const std::string& quantity);
 
 }  // namespace grainlaw::calibrate

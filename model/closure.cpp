@@ -21,7 +21,12 @@ struct Term {
   bool Terms::*flag;
   std::initializer_list<Form> forms;
 };
-const Term all_terms[] = {{"energy", &Terms::energy, {Form::coupled}}};
+const Term all_terms[] = {
+    {"axial",
+     &Terms::axial,
+     {Form::reduced_closed, Form::reduced, Form::coupled, Form::memory, Form::coupled_3_14}},
+    {"energy", &Terms::energy, {Form::coupled}},
+    {"volumetric", &Terms::volumetric, {Form::reduced, Form::coupled, Form::memory}}};
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
@@ -135,6 +140,10 @@ void add_terms(BasicLaws<P>& laws, const ParameterSet& parameters, const Terms& 
     laws.moduli.a_F = read(a_F);
     laws.moduli.a_s = read(a_s);
   }
+  if (terms.volumetric) {
+    const VolumetricLaws& v = parameters.need_volumetric(who);
+    laws.volumetric = {read(v.compression), read(v.decompression)};
+  }
 }
 
 }  // namespace
@@ -163,14 +172,14 @@ BasicLaws<P> laws_of(const ParameterSet& parameters, const Choice& choice, const
     laws.g3 = read(parameters.moduli->g3);
   else
     laws.g3 = fabric_size_factor(parameters.material.w);
-  laws.s_max = saturation_of(parameters.saturation("s_max", who), read);
-  laws.F_max = saturation_of(parameters.saturation("F_max", who), read);
-  laws.beta_F = saturation_of(parameters.saturation("beta_F", who), read);
+  laws.s_max = saturation_of(parameters.saturation("s_max", who, choice.terms.axial), read);
+  laws.F_max = saturation_of(parameters.saturation("F_max", who, choice.terms.axial), read);
+  laws.beta_F = saturation_of(parameters.saturation("beta_F", who, choice.terms.axial), read);
   if (choice.form == Form::memory) add_memory(laws, parameters, who, read);
   if (choice.form == Form::coupled || choice.form == Form::memory || choice.form == Form::coupled_3_14)
     laws.moduli = moduli_of(parameters.need_moduli(who), read);
   else
-    laws.beta_s = saturation_of(parameters.saturation("beta_s", who), read);
+    laws.beta_s = saturation_of(parameters.saturation("beta_s", who, choice.terms.axial), read);
   if (choice.form == Form::coupled_3_14 && parameters.moduli->a_I.value == 0)
     throw Error(parameters.file, "moduli.a_I.value", "must not be 0 for " + who + ", whose A is a_I B F_dev");
   add_terms(laws, parameters, choice.terms, who, read);

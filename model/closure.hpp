@@ -7,6 +7,7 @@
 
 #include "grainlaw/model/dual.hpp"
 #include "grainlaw/model/parameters.hpp"
+#include "grainlaw/model/volumetric.hpp"
 
 namespace grainlaw::model {
 
@@ -24,7 +25,9 @@ Form form_of(const std::string& name);
 
 /// Terms past the thesis that a form may take, off unless asked for.
 struct Terms {
-  bool energy = false;  ///< A1 and A2 from one energy (moduli.a_F, a_s) in place of Eqs. 4.12 and 4.13
+  bool axial = false;  ///< s_max, F_max and their rates of axisymmetric strain (group shear_axial), not of D2
+  bool energy = false;      ///< A1 and A2 from one energy (moduli.a_F, a_s) in place of Eqs. 4.12 and 4.13
+  bool volumetric = false;  ///< F_dev changes with volume alone (group volumetric)
   bool operator==(const Terms&) const = default;
 };
 
@@ -57,7 +60,8 @@ struct BasicLaws {
   BasicModuli<P> moduli;                 ///< coupled forms only
   BasicPressureCurve<P> shear_pressure;  ///< memory only: the row closure.contacts, of steady shear
   BasicMemoryNumbers<P> memory;          ///< memory only
-  Terms terms;                           ///< whose numbers are in the laws
+  BasicVolumetric<P> volumetric;
+  Terms terms;  ///< whose numbers are in the laws
 };
 using Laws = BasicLaws<double>;
 

@@ -91,6 +91,7 @@ struct BasicCoupled {
     dydt[0] = c.B * v;
     dydt[1] = A2 * v;
     dydt[2] = 0.0;
+    if (laws.terms.volumetric) dydt[2] = fabric_by_volume(laws.volumetric, v, F);
     if (vanishes(e)) return true;
     if (!(c.s_max > 0 && c.F_max > 0 && c.beta_F >= 0)) return false;
     const auto q = stretch.q();
@@ -98,7 +99,7 @@ struct BasicCoupled {
     const auto S_e = (1 - q * sigma / (pressure * c.s_max)) * (e / direction.S_I);
     dydt[0] = dydt[0] + A1 * S_e;
     dydt[1] = dydt[1] + G * S_e;
-    dydt[2] = approach_rate(q * c.F_max, F, c.beta_F * (abs(e) / direction.S_F_I));
+    dydt[2] = dydt[2] + approach_rate(q * c.F_max, F, c.beta_F * (abs(e) / direction.S_F_I));
     return true;
   }
   /// The fastest rate at which s_dev or F_dev approach saturation, per unit t.

@@ -161,8 +161,9 @@ struct BasicMemory {
         dydt[0] = dydt[0] + G * (1 - q * sigma / (P_star * c.s_max)) * (e / direction.S_I);
       }
     }
+    if (laws.terms.volumetric) dydt[1] = fabric_by_volume(laws.volumetric, v, F);
     if (!shears) return true;
-    dydt[1] = approach_rate(q * c.F_max, F, c.beta_F * (size_e / direction.S_F_I));
+    dydt[1] = dydt[1] + approach_rate(q * c.F_max, F, c.beta_F * (size_e / direction.S_F_I));
     const auto a = q * F / c.F_max;
     if (a > 0)
       dydt[2] = (1 - m) * a * (size_e / laws.memory.eps_c);

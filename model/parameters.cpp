@@ -57,6 +57,13 @@ const std::vector<Key<ModuliLaws>>& keys(const ModuliLaws&) {
   return list;
 }
 
+const std::vector<Key<VolumetricLaws>>& keys(const VolumetricLaws&) {
+  static const std::vector<Key<VolumetricLaws>> list{
+      {"compression", &VolumetricLaws::compression, any_number()},
+      {"decompression", &VolumetricLaws::decompression, any_number()}};
+  return list;
+}
+
 const std::vector<Key<MemoryLaws>>& keys(const MemoryLaws&) {
   static const std::vector<Key<MemoryLaws>> list{
       {"phi_SJ", &MemoryLaws::phi_SJ, inside(0, 1)},   {"mu", &MemoryLaws::mu, above(0)},
@@ -142,6 +149,13 @@ const MemoryOption memory_options[] = {{"phi_cr", &MemoryLaws::phi_cr, inside(0,
                                        {"eps_c", &MemoryLaws::eps_c, above(0)},
                                        {"eps_r", &MemoryLaws::eps_r, above(0)}};
 
+Json shear_json(const ShearLaws& shear) {
+  Json json = Json::object();
+  for (const auto& [quantity, member] : quantities)
+    if (shear.*member) json[quantity] = group_json(*(shear.*member));
+  return json;
+}
+
 MemoryLaws read_memory(Reader reader) {
   auto memory = read_keys<MemoryLaws>(reader);
   for (const auto& [name, member, range] : memory_options)
@@ -210,7 +224,9 @@ ParameterSet ParameterSet::read(Reader reader) {
   set.closure = read_closure(reader.object("closure"));
   set.isotropic = read_isotropic(reader.object_or_empty("isotropic"));
   if (auto object = maybe_object(reader, "shear")) set.shear = read_shear(*object);
+  if (auto object = maybe_object(reader, "shear_axial")) set.shear_axial = read_shear(*object);
   if (auto object = maybe_object(reader, "moduli")) set.moduli = read_moduli(*object);
+  if (auto object = maybe_object(reader, "volumetric")) set.volumetric = read_group<VolumetricLaws>(*object);
   if (auto object = maybe_object(reader, "memory")) set.memory = read_memory(*object);
   reader.finish();
   return set;
@@ -224,16 +240,14 @@ Json ParameterSet::to_json() const {
   json["isotropic"] = Json::object();
   for (const auto& mode : modes)
     if (isotropic.contains(mode)) json["isotropic"][mode] = group_json(isotropic.at(mode));
-  if (shear) {
-    json["shear"] = Json::object();
-    for (const auto& [quantity, member] : quantities)
-      if ((*shear).*member) json["shear"][quantity] = group_json(*((*shear).*member));
-  }
+  if (shear) json["shear"] = shear_json(*shear);
+  if (shear_axial) json["shear_axial"] = shear_json(*shear_axial);
   if (moduli) {
     json["moduli"] = group_json(*moduli);
     if (moduli->a_F) json["moduli"]["a_F"] = parameter_json(*moduli->a_F);
     if (moduli->a_s) json["moduli"]["a_s"] = parameter_json(*moduli->a_s);
   }
+  if (volumetric) json["volumetric"] = group_json(*volumetric);
   if (memory) {
     json["memory"] = group_json(*memory);
     for (const auto& [key, member, range] : memory_options)
@@ -250,15 +264,18 @@ std::vector<NamedParameter> ParameterSet::named() const {
   };
   for (const auto& mode : modes)
     if (isotropic.contains(mode)) add("isotropic." + mode, isotropic.at(mode));
-  if (shear) {
+  const auto add_shear = [&](const std::string& group, const std::optional<ShearLaws>& laws) {
     for (const auto& [quantity, member] : quantities)
-      if ((*shear).*member) add(std::string("shear.") + quantity, *((*shear).*member));
-  }
+      if (laws && (*laws).*member) add(group + "." + quantity, *((*laws).*member));
+  };
+  add_shear("shear", shear);
+  add_shear("shear_axial", shear_axial);
   if (moduli) {
     add("moduli", *moduli);
     if (moduli->a_F) list.push_back({"moduli.a_F", &*moduli->a_F, any_number()});
     if (moduli->a_s) list.push_back({"moduli.a_s", &*moduli->a_s, any_number()});
   }
+  if (volumetric) add("volumetric", *volumetric);
   if (memory) {
     add("memory", *memory);
     for (const auto& [key, member, range] : memory_options)
@@ -279,11 +296,14 @@ const PackingLaw& ParameterSet::packing(const std::string& mode, const std::stri
   return row->second;
 }
 
-const SaturationLaw& ParameterSet::saturation(const std::string& quantity, const std::string& why) const {
-  if (!shear) throw Error(file, "shear", "is missing; " + why + " needs it");
+const SaturationLaw& ParameterSet::saturation(const std::string& quantity, const std::string& why,
+                                              bool axial) const {
+  const std::optional<ShearLaws>& laws = axial ? shear_axial : shear;
+  const std::string group = axial ? "shear_axial" : "shear";
+  if (!laws) throw Error(file, group, "is missing; " + why + " needs it");
   for (const auto& [name_, member] : quantities)
-    if (quantity == name_ && (*shear).*member) return *((*shear).*member);
-  throw Error(file, "shear." + quantity, "is missing; " + why + " needs it");
+    if (quantity == name_ && (*laws).*member) return *((*laws).*member);
+  throw Error(file, group + "." + quantity, "is missing; " + why + " needs it");
 }
 
 const ModuliLaws& ParameterSet::need_moduli(const std::string& why) const {
@@ -295,6 +315,11 @@ std::pair<const Parameter&, const Parameter&> ParameterSet::need_energy(const st
   const ModuliLaws& laws = need_moduli(why);
   if (!laws.a_F) throw Error(file, "moduli.a_F", "is missing; " + why + " needs it");
   return {*laws.a_F, *laws.a_s};
+}
+
+const VolumetricLaws& ParameterSet::need_volumetric(const std::string& why) const {
+  if (!volumetric) throw Error(file, "volumetric", "is missing; " + why + " needs it");
+  return *volumetric;
 }
 
 const MemoryLaws& ParameterSet::need_memory(const std::string& why) const {

@@ -54,6 +54,11 @@ struct ModuliLaws {
   Moduli values() const;
 };
 
+/// volumetric: -d ln F_dev/d ln nu under isotropic strain, past the thesis, which neglects it.
+struct VolumetricLaws {
+  Parameter compression, decompression;
+};
+
 /// memory: Eqs. 5.1 to 5.13.
 struct MemoryLaws {
   Parameter phi_SJ, mu, beta, alpha_max, alpha_phi, alpha, eps0, eps0_R;
@@ -82,8 +87,10 @@ struct ParameterSet {
   Material material;
   Closure closure;
   std::map<std::string, PackingLaw> isotropic;  ///< by mode: iso, uni, d2, d3
-  std::optional<ShearLaws> shear;
+  std::optional<ShearLaws> shear;               ///< of D2
+  std::optional<ShearLaws> shear_axial;         ///< past the thesis: of axisymmetric strain (D3, UNI)
   std::optional<ModuliLaws> moduli;
+  std::optional<VolumetricLaws> volumetric;
   std::optional<MemoryLaws> memory;
   std::string file;  ///< where it was read from, for error messages; may be empty
 
@@ -100,10 +107,12 @@ struct ParameterSet {
   /// The row or group asked for. Throws Error naming file, group and why it is needed ("... needs
   /// isotropic.d2").
   const PackingLaw& packing(const std::string& mode, const std::string& why) const;
-  const SaturationLaw& saturation(const std::string& quantity, const std::string& why) const;
+  const SaturationLaw& saturation(const std::string& quantity, const std::string& why,
+                                  bool axial = false) const;
   const ModuliLaws& need_moduli(const std::string& why) const;
   /// moduli.a_F and moduli.a_s.
   std::pair<const Parameter&, const Parameter&> need_energy(const std::string& why) const;
+  const VolumetricLaws& need_volumetric(const std::string& why) const;
   const MemoryLaws& need_memory(const std::string& why) const;
 };
 

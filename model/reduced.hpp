@@ -128,6 +128,7 @@ struct BasicReduced : BasicReducedPoint<P> {
     const auto e = q * stretch.eps_dev;
     dydt[0] = approach_rate(q * c.s_max, y[0], c.beta_s * e);
     dydt[1] = approach_rate(q * c.F_max, y[1], c.beta_F * e);
+    if (laws.terms.volumetric) dydt[1] = dydt[1] + fabric_by_volume(laws.volumetric, stretch.eps_vol, y[1]);
     return true;
   }
   /// The fastest rate of approach, per unit t.
