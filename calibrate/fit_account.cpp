@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "grainlaw/calibrate/fit_memory_account.hpp"
 #include "grainlaw/calibrate/fit_moduli_account.hpp"
 #include "grainlaw/element/error.hpp"
 
@@ -273,7 +274,7 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
   account.left_out = folder.left_out;
   account.narrow_P_min = narrow_pressure * selection.P_min;
   for (const TestRecord& test : folder.tests) {
-    if (test.mode == "mixed" || test.mode == "components") {
+    if (test.role != Role::memory && (test.mode == "mixed" || test.mode == "components")) {
       account.left_out.push_back({test.name, test.role, "its path is not of one mode (iso, uni, d2, d3)"});
     }
   }
@@ -288,11 +289,12 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
   account.nu_c = account.nu_c_fitted ? nu_c.value : thesis.value;
   const double nu_c_error = account.nu_c_fitted ? nu_c.stderr_.value_or(0) : thesis.error;
   for (const TestRecord& test : folder.tests) {
-    if (is_shear(test.mode)) fit_shear_test(account, test, selection);
+    if (is_shear(test.mode) && test.role != Role::memory) fit_shear_test(account, test, selection);
   }
   for (const ShearQuantity quantity : shear_quantities)
     fit_density(account, quantity, nu_c_error, reference, selection);
   fit_moduli_of(account, folder, reference);
+  fit_memory_of(account, folder, reference, selection);
   return account;
 }
 
@@ -305,6 +307,7 @@ Json Account::to_json() const {
   for (const LeftOut& left : left_out) {
     json["left_out"].push_back({{"test", left.name}, {"role", name_of(left.role)}, {"reason", left.reason}});
   }
+  if (memory) json["memory"] = memory_json(*memory, shear_jammings);
   return json;
 }
 
