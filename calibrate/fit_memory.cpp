@@ -86,9 +86,10 @@ double lowest_x(const std::vector<FitSeries>& series, double otherwise) {
   return lowest;
 }
 
-FitParameter limit_density(const KnownValues& known, const std::vector<FitSeries>& series, int hold_order) {
+FitParameter limit_density(const std::string& name, const KnownValues& known,
+                           const std::vector<FitSeries>& series, int hold_order) {
   const double high = lowest_x(series, 0.7) * (1 - off_phi_SJ);
-  FitParameter p = known_parameter(known, "phi_SJ", high - 2e-3, high - 0.06, high, 5e-3, hold_order);
+  FitParameter p = known_parameter(known, name, high - 2e-3, high - 0.06, high, 5e-3, hold_order);
   p.bounds_follow_data = true;
   return p;
 }
@@ -116,7 +117,7 @@ FitProblem over_compression_problem(const std::vector<CycleDensity>& cycles, Gro
   problem.series = series_of(cycles);
   problem.x_resolution = nu_resolution;
   problem.starts = starts;
-  problem.parameters = {limit_density(known, problem.series, 3),
+  problem.parameters = {limit_density("phi_SJ", known, problem.series, 3),
                         known_parameter(known, "alpha_max", 0.02, 1e-4, 0.5, 0.02, 4),
                         known_parameter(known, "alpha_phi", 0.3, 0.02, 3, 0.3, 1),
                         known_parameter(known, "mu", 1, 1e-3, 1e4, 1, 0),
@@ -203,9 +204,7 @@ FitProblem shear_jamming_problem(const std::vector<ShearJamming>& runs, const Kn
   });
   problem.points = Points::runs;
   problem.starts = starts;
-  KnownValues with_limit = known;
-  with_limit.insert_or_assign("phi_SJ", phi_SJ);
-  problem.parameters = {limit_density(with_limit, problem.series, 0),
+  problem.parameters = {limit_density("phi_SJ_sheared", {{"phi_SJ_sheared", phi_SJ}}, problem.series, 0),
                         known_parameter(known, "alpha", 1.4, 0.2, 10, 1, 1),
                         known_parameter(known, "eps0", 0.1, 1e-3, 2, 0.1, 2)};
   return problem;
@@ -222,7 +221,7 @@ FitProblem reversal_problem(const std::vector<ShearJamming>& runs, const KnownVa
   problem.starts = starts;
   const double lowest = lowest_x(problem.series, 0.66);
   problem.parameters = {
-      held_parameter("phi_SJ", phi_SJ), held_parameter("alpha", alpha),
+      held_parameter("phi_SJ_sheared", phi_SJ), held_parameter("alpha", alpha),
       known_parameter(known, "eps0_R", 0.17, 1e-3, 2, 0.1, 1),
       known_parameter(known, "phi_cr", lowest + 4e-3, lowest * (1 + off_phi_SJ), lowest + 0.05, 5e-3, 0)};
   return problem;
@@ -239,7 +238,7 @@ MemoryFit fit_memory(const std::vector<CycleDensity>& cycles, const std::vector<
   out.entangled = entanglement(out.over_compression_law, out.over_compression);
   out.shear_law = shear_jamming_problem(runs, phi_SJ, known);
   out.shear = fit(out.shear_law);
-  const FitEstimate &alpha = out.shear["alpha"], &sheared = out.shear["phi_SJ"];
+  const FitEstimate &alpha = out.shear["alpha"], &sheared = out.shear["phi_SJ_sheared"];
   out.reversal_law = reversal_problem(runs, {sheared.value, sheared.stderr_.value_or(0)},
                                       {alpha.value, alpha.stderr_.value_or(0)}, known);
   out.reversal = fit(out.reversal_law);

@@ -54,12 +54,13 @@ struct Entanglement {
 std::vector<Entanglement> entanglement(const FitProblem& problem, const FitResult& at);
 
 /// eps_SJ = eps0 {-ln[(phi - phi_SJ)/(phi_J0 - phi_SJ)]}^(1/alpha) (Eq. 5.2) over phi, with phi_J0 as the
-/// known: first loadings that jam, of packings that are not jammed before. Parameters phi_SJ, alpha, eps0.
+/// known: first loadings that jam, of packings that are not jammed before. Parameters phi_SJ_sheared (of
+/// these runs alone; held at `phi_SJ` where they do not tell), alpha, eps0.
 FitProblem shear_jamming_problem(const std::vector<ShearJamming>& runs, const KnownValue& phi_SJ,
                                  const KnownValues& known);
 
 /// The same after the first reversal, with phi_cr in place of phi_J0 (Eq. 5.13); runs that stay jammed count
-/// with strain 0. Parameters phi_SJ (held), alpha (held), eps0_R, phi_cr.
+/// with strain 0. Parameters phi_SJ_sheared (held), alpha (held), eps0_R, phi_cr.
 FitProblem reversal_problem(const std::vector<ShearJamming>& runs, const KnownValue& phi_SJ,
                             const KnownValue& alpha, const KnownValues& known);
 

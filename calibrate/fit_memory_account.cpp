@@ -52,9 +52,15 @@ std::optional<CycleDensity> origin_of(const Account& account, const TestRecord& 
   return std::nullopt;
 }
 
+/// A packing that others start from, brought to rest.
+bool only_relaxes(const TestRecord& test) {
+  return std::all_of(test.legs.begin(), test.legs.end(),
+                     [](const Leg& leg) { return leg.mode == Mode::relax; });
+}
+
 void read_shear(Account& account, const RecordFolder& folder, const Selection& selection) {
   for (const TestRecord& test : folder.tests) {
-    if (test.role != Role::memory || test.mode == "iso") continue;
+    if (test.role != Role::memory || test.mode == "iso" || only_relaxes(test)) continue;
     const auto from = origin_of(account, test);
     if (test.mode == "d2" && from && from->from_P.known()) {
       const auto runs = shear_jammings(test, *from, selection);
@@ -172,6 +178,8 @@ void fit_memory_of(Account& account, const RecordFolder& folder, const Reference
         reversal_entry(*account.memory, selection)}) {
     entry.role = Role::memory;
     entry.thesis = reference.thesis_memory();
+    if (const auto limit = entry.thesis.find("phi_SJ"); limit != entry.thesis.end())
+      entry.thesis.emplace("phi_SJ_sheared", limit->second);
     account.entries.push_back(std::move(entry));
   }
 }

@@ -63,20 +63,50 @@ LegRows rows_of(const TestRecord& test, std::size_t leg) {
   return out;
 }
 
+std::vector<bool> rows_that_show(const TestRecord& test, const LegRows& at, JamSign sign,
+                                 const Selection& selection) {
+  std::vector<bool> jammed;
+  for (const std::size_t row : at.rows) jammed.push_back(shows(test, row, sign, selection));
+  return jammed;
+}
+
+/// The first row that percolates along all axes, from the first that is loose by contacts; 0 where none is.
+double percolation_strain(const std::vector<double>& strain, const std::vector<bool>& percolating,
+                          const std::vector<bool>& contacts) {
+  const std::vector<bool> state = smoothed(contacts);
+  const auto loose = std::find(state.begin(), state.end(), false);
+  if (loose == state.end()) return 0;
+  for (auto i = static_cast<std::size_t>(loose - state.begin()); i < strain.size(); ++i)
+    if (percolating[i]) return strain[i];
+  return nan;
+}
+
+double share_from(const std::vector<double>& strain, const std::vector<bool>& rows, double from) {
+  double yes = 0, all = 0;
+  for (std::size_t i = 0; i < strain.size(); ++i) {
+    if (!(strain[i] >= from)) continue;
+    all += 1;
+    yes += rows[i] ? 1 : 0;
+  }
+  return all > 0 ? yes / all : nan;
+}
+
 ShearJamming measure(const TestRecord& test, const LegRows& at, const Selection& selection) {
   ShearJamming out;
   out.test = test.name;
   out.group = test.seed;
   out.nu = test.rows["nu"][at.rows.front()];
   out.longest = at.strain.back();
-  for (const JamSign sign : jam_signs) {
-    double& strain = out.strain[static_cast<std::size_t>(sign)];
-    strain = nan;
-    if (sign == JamSign::percolation && !test.rows.has("percolating")) continue;
-    std::vector<bool> jammed;
-    for (const std::size_t row : at.rows) jammed.push_back(shows(test, row, sign, selection));
-    strain = jamming_strain(at.strain, jammed);
-  }
+  const auto contacts = rows_that_show(test, at, JamSign::contacts, selection);
+  const double by_contacts = jamming_strain(at.strain, contacts);
+  out.strain = {by_contacts, nan,
+                jamming_strain(at.strain, rows_that_show(test, at, JamSign::pressure, selection))};
+  out.percolating = nan;
+  if (!test.rows.has("percolating")) return out;
+  const auto percolating = rows_that_show(test, at, JamSign::percolation, selection);
+  out.strain[static_cast<std::size_t>(JamSign::percolation)] =
+      percolation_strain(at.strain, percolating, contacts);
+  out.percolating = share_from(at.strain, percolating, by_contacts);
   return out;
 }
 
@@ -128,9 +158,11 @@ std::vector<ShearJamming> shear_jammings(const TestRecord& test, const CycleDens
 }
 
 std::string shear_jamming_rule(const Selection& selection) {
-  return "first strain from which nine tenths of the rows over " + to_text(sustained_strain) +
-         " have C* >= 6 (or strong forces that percolate along three axes, or P >= " +
-         to_text(selection.P_min) + "), each row by the majority of the five about it";
+  return "first strain from which three quarters of the rows over " + to_text(sustained_strain) +
+         " have C* >= 6 (by pressure: P >= " + to_text(selection.P_min) +
+         "), each row by the majority of the five about it; by percolation: the first row whose strong "
+         "forces "
+         "percolate along three axes";
 }
 
 }  // namespace grainlaw::calibrate

@@ -32,6 +32,7 @@ const std::vector<std::string> shear_columns{"seed",
                                              "eps_contacts",
                                              "eps_percolation",
                                              "eps_pressure",
+                                             "percolating",
                                              "longest"};
 
 /// Seeds are numbers in a campaign; a record of another name has none.
@@ -47,6 +48,14 @@ std::string seed_text(const std::filesystem::path& file, double seed) {
   return std::to_string(static_cast<long long>(seed));
 }
 
+/// To 1e-7, far below any error of theirs.
+double rounded(double value) { return std::isfinite(value) ? std::nearbyint(value * 1e7) / 1e7 : value; }
+
+std::vector<double> rounded(std::vector<double> row) {
+  for (double& value : row) value = rounded(value);
+  return row;
+}
+
 std::string record_of(const std::string& kind, double phi, const std::string& seed) {
   return kind + "-" + to_text(phi) + "-s" + seed;
 }
@@ -56,18 +65,19 @@ std::string record_of(const std::string& kind, double phi, const std::string& se
 Record over_compression_table(const std::vector<CycleDensity>& cycles) {
   Record table(cycle_columns);
   for (const CycleDensity& c : cycles)
-    table.append({seed_number(c.group), c.phi_max, c.M, c.from_P.value, c.from_P.error, c.from_C_star.value,
-                  c.from_C_star.error, c.from_f_NR.value, c.from_f_NR.error, c.p0,
-                  static_cast<double>(c.rows)});
+    table.append(rounded({seed_number(c.group), c.phi_max, c.M, c.from_P.value, c.from_P.error,
+                          c.from_C_star.value, c.from_C_star.error, c.from_f_NR.value, c.from_f_NR.error,
+                          c.p0, static_cast<double>(c.rows)}));
   return table;
 }
 
 Record shear_jamming_table(const std::vector<ShearJamming>& runs) {
   Record table(shear_columns);
   for (const ShearJamming& r : runs)
-    table.append({seed_number(r.group), r.phi_max, r.M, r.phi_J0.value, r.phi_J0.error, r.nu,
-                  static_cast<double>(r.reversals), r.jammed_before ? 1.0 : 0.0, r.by(JamSign::contacts),
-                  r.by(JamSign::percolation), r.by(JamSign::pressure), r.longest});
+    table.append(
+        rounded({seed_number(r.group), r.phi_max, r.M, r.phi_J0.value, r.phi_J0.error, r.nu,
+                 static_cast<double>(r.reversals), r.jammed_before ? 1.0 : 0.0, r.by(JamSign::contacts),
+                 r.by(JamSign::percolation), r.by(JamSign::pressure), r.percolating, r.longest}));
   return table;
 }
 
@@ -104,6 +114,7 @@ std::vector<ShearJamming> read_shear_jamming(const std::filesystem::path& file) 
     r.reversals = static_cast<std::size_t>(table["reversals"][i]);
     r.jammed_before = table["jammed_before"][i] != 0;
     r.strain = {table["eps_contacts"][i], table["eps_percolation"][i], table["eps_pressure"][i]};
+    r.percolating = table["percolating"][i];
     r.longest = table["longest"][i];
     runs.push_back(r);
   }

@@ -11,7 +11,7 @@
 
 namespace grainlaw::calibrate {
 
-/// One row per cycle; phi_J is empty where the packing was not jammed.
+/// One row per cycle, numbers to 1e-7; phi_J is empty where the packing was not jammed.
 Record over_compression_table(const std::vector<CycleDensity>& cycles);
 /// One row per leg of shear.
 Record shear_jamming_table(const std::vector<ShearJamming>& runs);

@@ -198,7 +198,7 @@ std::vector<ShearJamming> shear_runs() {
 
 TEST(MemoryFits, ShearJammingGivesItsThreeNumbersBack) {
   const FitResult result = fit(shear_jamming_problem(shear_runs(), {0.6567, 5e-4}, thesis_values));
-  expect_value(result, "phi_SJ", 0.6567, 1e-7);
+  expect_value(result, "phi_SJ_sheared", 0.6567, 1e-7);
   expect_value(result, "alpha", 1.37, 1e-4);
   expect_value(result, "eps0", 0.102, 1e-5);
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/calibrate/memory_tables.hpp"
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/provenance.hpp"
 #include "grainlaw/dem/scene.hpp"
@@ -108,6 +109,15 @@ TEST(Schema, Observers) {
     EXPECT_EQ(keys(file["properties"]), table.rows.columns()) << table.file;
     EXPECT_EQ(file["required"].get<std::vector<std::string>>(), table.rows.columns()) << table.file;
   }
+}
+
+TEST(Schema, ColumnsOfTheTablesOfMemory) {
+  EXPECT_EQ(keys(schema("over_compression")["properties"]), calibrate::over_compression_table({}).columns());
+  EXPECT_EQ(keys(schema("shear_jamming")["properties"]), calibrate::shear_jamming_table({}).columns());
+  EXPECT_EQ(schema("over_compression")["required"].get<std::vector<std::string>>(),
+            calibrate::over_compression_table({}).columns());
+  EXPECT_EQ(schema("shear_jamming")["required"].get<std::vector<std::string>>(),
+            calibrate::shear_jamming_table({}).columns());
 }
 
 TEST(Schema, ColumnsOfATableOfModuli) {
