@@ -120,9 +120,7 @@ TEST(Schema, ColumnsOfTheTablesOfMemory) {
             calibrate::shear_jamming_table({}).columns());
 }
 
-TEST(Schema, ColumnsOfATableOfModuli) {
-  EXPECT_EQ(keys(schema("moduli")["properties"]), moduli_columns());
-}
+TEST(Schema, ColumnsOfATableOfModuli) { EXPECT_EQ(keys(schema("moduli")["properties"]), moduli_columns()); }
 
 TEST(Schema, ColumnsOfARecord) {
   const Json file = schema("record");
