@@ -26,5 +26,6 @@ Action add_report(CLI::App& program);
 Action add_bench(CLI::App& program);
 Action add_export(CLI::App& program);
 Action add_probe(CLI::App& program);
+Action add_infer(CLI::App& program);
 
 }  // namespace grainlaw::apps

@@ -35,6 +35,7 @@ constexpr auto examples =
     "  grainlaw report out/quick                                 pictures and tables from what is on disk\n"
     "  grainlaw bench dem                                        what a wanted error of the DEM costs\n"
     "  grainlaw probe out/d2/snapshots.h5 -o moduli.csv          small-strain moduli of packings\n"
+    "  grainlaw infer-phij out/d2/record.csv -o phij.csv         the jamming density along a record\n"
     "  grainlaw export out/d2/snapshots.h5 -o d2.vtp             a packing and its force chains, for "
     "ParaView\n"
     "File formats: docs/formats.md. Every command at length: docs/commands.md.\n"
@@ -61,7 +62,7 @@ int run_command_line(int argc, char** argv) {
   program.require_subcommand(1);
   const std::array<Action, 8> actions{add_calibrate(program), add_simulate(program), add_predict(program),
                                       add_fit(program),       add_report(program),   add_bench(program),
-                                      add_export(program),    add_probe(program)};
+                                      add_export(program),    add_probe(program),    add_infer(program)};
   const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
   const auto is_unknown = [&](const std::string& name) {
     return std::none_of(commands.begin(), commands.end(),
@@ -69,7 +70,7 @@ int run_command_line(int argc, char** argv) {
   };
   if (argc > 1 && argv[1][0] != '-' && is_unknown(argv[1]))
     return complain_usage(program, fmt::format("unknown command \"{}\"; known are calibrate, simulate, "
-                                               "predict, fit, report, probe, export, bench",
+                                               "predict, fit, report, probe, infer-phij, export, bench",
                                                argv[1]));
   try {
     program.parse(argc, argv);

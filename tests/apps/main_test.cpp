@@ -47,7 +47,7 @@ TEST_F(Program, VersionNamesCommitCompilerAndLibraries) {
 
 TEST_F(Program, HelpHasAnExampleForEachCommand) {
   const std::string help = run({"--help"}).out;
-  for (const char* name : {"calibrate", "simulate", "predict", "fit", "report", "export", "bench"}) {
+  for (const char* name : {"calibrate", "simulate", "predict", "fit", "report", "infer-phij", "export", "bench"}) {
     EXPECT_THAT(help, HasSubstr(std::string("  grainlaw ") + name));
     const Outcome own = run({name, "--help"});
     EXPECT_EQ(own.status, 0);
