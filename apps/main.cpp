@@ -60,7 +60,7 @@ int run_command_line(int argc, char** argv) {
   program.footer(examples);
   program.set_version_flag("--version", version_text(), "version, commit, compiler and libraries");
   program.require_subcommand(1);
-  const std::array<Action, 8> actions{add_calibrate(program), add_simulate(program), add_predict(program),
+  const std::array<Action, 9> actions{add_calibrate(program), add_simulate(program), add_predict(program),
                                       add_fit(program),       add_report(program),   add_bench(program),
                                       add_export(program),    add_probe(program),    add_infer(program)};
   const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
