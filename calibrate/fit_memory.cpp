@@ -204,8 +204,8 @@ FitProblem shear_jamming_problem(const std::vector<ShearJamming>& runs, const Kn
   });
   problem.points = Points::runs;
   problem.starts = starts;
-  problem.parameters = {limit_density("phi_SJ_sheared", {{"phi_SJ_sheared", phi_SJ}}, problem.series, 0),
-                        known_parameter(known, "alpha", 1.4, 0.2, 10, 1, 1),
+  problem.parameters = {limit_density("phi_SJ_sheared", {{"phi_SJ_sheared", phi_SJ}}, problem.series, 1),
+                        known_parameter(known, "alpha", 1.4, 0.2, 10, 1, 0),
                         known_parameter(known, "eps0", 0.1, 1e-3, 2, 0.1, 2)};
   return problem;
 }
