@@ -119,7 +119,7 @@ class Calibration {
     times_.measure("fit", [&] {
       fitted = calibrate::fit_records(folder_.dir(), find_thesis(campaign_.material.w));
       write_file(folder_.dir() / "parameters.json", fitted.parameters.to_json().dump(2) + "\n");
-      write_file(folder_.dir() / "fits.json", fitted.fits.dump(2) + "\n");
+      fitted.write_account(folder_.dir());
     });
     Json predictions;
     terminal_.draw("predicting");

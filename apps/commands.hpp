@@ -28,5 +28,6 @@ Action add_bench(CLI::App& program);
 Action add_export(CLI::App& program);
 Action add_probe(CLI::App& program);
 Action add_replay(CLI::App& program);
+Action add_infer(CLI::App& program);
 
 }  // namespace grainlaw::apps

@@ -30,7 +30,8 @@ namespace fs = std::filesystem;
 std::vector<fs::path> inputs_in(const fs::path& dir) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(dir))
-    for (const char* name : {"campaign.json", "scene.json", "record.csv", "moduli.csv", "provenance.json", "snapshots.h5"})
+    for (const char* name :
+         {"campaign.json", "scene.json", "record.csv", "moduli.csv", "provenance.json", "snapshots.h5"})
       if (entry.path().filename() == name) files.push_back(entry.path());
   return files;
 }
@@ -56,7 +57,10 @@ int run(const Arguments& arguments) {
   const auto lock = lock_of(arguments);
   const calibrate::FitOutput fitted = calibrate::fit_records(dir, find_thesis(size_ratio_of_records(dir)));
   write_file(output, fitted.parameters.to_json().dump(2) + "\n");
-  if (!fits.empty()) write_file(fits, fitted.fits.dump(2) + "\n");
+  if (arguments.output.empty() && arguments.fits.empty())
+    fitted.write_account(dir);
+  else if (!fits.empty())
+    write_file(fits, fitted.fits.dump(2) + "\n");
   write_stdout(parameter_table(fitted.parameters) + fit_remarks(fitted.fits) + "wrote " + output.string() +
                (fits.empty() ? "" : " and " + fits.string()) + "\n");
   return all_well;

@@ -36,6 +36,7 @@ constexpr auto examples =
     "  grainlaw report out/quick                                 pictures and tables from what is on disk\n"
     "  grainlaw bench dem                                        what a wanted error of the DEM costs\n"
     "  grainlaw probe out/d2/snapshots.h5 -o moduli.csv          small-strain moduli of packings\n"
+    "  grainlaw infer-phij out/d2/record.csv -o phij.csv         the jamming density along a record\n"
     "  grainlaw export out/d2/snapshots.h5 -o d2.vtp             a packing and its force chains, for "
     "ParaView\n"
     "  grainlaw replay failed.json                               an increment of the law that failed in a "
@@ -65,7 +66,7 @@ int run_command_line(int argc, char** argv) {
   const std::vector<Action> actions{add_calibrate(program), add_simulate(program), add_predict(program),
                                     add_fit(program),       add_polish(program),   add_report(program),
                                     add_bench(program),     add_export(program),   add_probe(program),
-                                    add_replay(program)};
+                                    add_replay(program),    add_infer(program)};
   const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
   const auto is_unknown = [&](const std::string& name) {
     return std::none_of(commands.begin(), commands.end(),
@@ -73,7 +74,8 @@ int run_command_line(int argc, char** argv) {
   };
   if (argc > 1 && argv[1][0] != '-' && is_unknown(argv[1]))
     return complain_usage(program, fmt::format("unknown command \"{}\"; known are calibrate, simulate, "
-                                               "predict, fit, polish, report, probe, export, replay, bench",
+                                               "predict, fit, polish, report, probe, infer-phij, export, "
+                                               "replay, bench",
                                                argv[1]));
   try {
     program.parse(argc, argv);

@@ -61,8 +61,8 @@ void remove_leftover(const fs::path& part) {
   for (const auto& entry : fs::directory_iterator(part)) {
     const std::string name = entry.path().filename().string();
     bool ours = false;
-    for (const std::string_view file :
-         {"scene.json", "snapshots.h5", "moduli.csv", "provenance.json", "record.csv", "rows.csv", "checkpoint."})
+    for (const std::string_view file : {"scene.json", "snapshots.h5", "moduli.csv", "provenance.json",
+                                        "record.csv", "rows.csv", "checkpoint."})
       ours = ours || name.starts_with(file);
     for (const std::string& table : dem::observe::tables(dem::observe::names()))
       ours = ours || name.starts_with(table);

@@ -55,6 +55,22 @@ void add_moduli_rows(const model::ParameterSet& set, const Add& add) {
   add("moduli.g_I", m.g_I);
 }
 
+/// The same for group memory.
+template <class Add>
+void add_memory_rows(const model::ParameterSet& set, const Add& add) {
+  if (!set.memory) return;
+  const model::MemoryLaws& m = *set.memory;
+  add("memory.phi_SJ", m.phi_SJ);
+  add("memory.alpha_max", m.alpha_max);
+  add("memory.alpha_phi", m.alpha_phi);
+  add("memory.mu", m.mu);
+  add("memory.beta", m.beta);
+  add("memory.alpha", m.alpha);
+  add("memory.eps0", m.eps0);
+  add("memory.eps0_R", m.eps0_R);
+  if (m.phi_cr) add("memory.phi_cr", *m.phi_cr);
+}
+
 /// The fitted parameters with their names, in the order they are shown.
 using Rows = std::vector<std::pair<std::string, const model::Parameter*>>;
 
@@ -77,6 +93,7 @@ Rows fitted_rows(const model::ParameterSet& set) {
   }
   add_shear_rows(set, add);
   add_moduli_rows(set, add);
+  add_memory_rows(set, add);
   return rows;
 }
 

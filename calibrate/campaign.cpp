@@ -68,12 +68,17 @@ Path read_path(Reader reader) {
   return path;
 }
 
+Role role_from(const std::string& word) {
+  if (word == "memory") return Role::memory;
+  return word == "fit" ? Role::fit : Role::predict;
+}
+
 /// Reads a test and writes out its list of states.
 std::vector<WrittenTest> read_test(Reader& reader, const Campaign& campaign) {
   CampaignTest test;
   test.key = reader.path_of("");
   test.name = read_name(reader);
-  test.role = reader.word("role", {"fit", "predict"}) == "fit" ? Role::fit : Role::predict;
+  test.role = role_from(reader.word("role", {"fit", "predict", "memory"}));
   std::optional<WrittenOrigin> from;
   if (reader.has("from")) from = read_origin(reader.object("from"));
   test.seeds = reader.has("seeds") ? read_seeds(reader) : campaign.seeds;
@@ -81,9 +86,9 @@ std::vector<WrittenTest> read_test(Reader& reader, const Campaign& campaign) {
     if (std::find(campaign.seeds.begin(), campaign.seeds.end(), seed) == campaign.seeds.end())
       reader.fail("seeds", "must be some of the campaign's seeds, got " + std::to_string(seed));
   test.path = read_path(reader.object("path"));
-  if (test.role == Role::fit && test.path.by_stress())
-    reader.fail("role",
-                "must be predict where the path is under stress control, got fit: the laws follow strains");
+  if (test.role != Role::predict && test.path.by_stress())
+    reader.fail("role", "must be predict where the path is under stress control, got " + name_of(test.role) +
+                            ": the laws follow strains");
   test.measure = dem::Measure::read(reader.object_or_empty("measure"), campaign.measure);
   reader.finish();
   if (!from || !from->list) return {{test, from}};
@@ -117,7 +122,10 @@ std::string first_difference(const Json& there, const Json& here, const std::str
   return grainlaw::first_difference(there, here, key);
 }
 
-std::string name_of(Role role) { return role == Role::fit ? "fit" : "predict"; }
+std::string name_of(Role role) {
+  if (role == Role::memory) return "memory";
+  return role == Role::fit ? "fit" : "predict";
+}
 
 std::string record_name(std::string_view test, std::int64_t seed) {
   return std::string(test) + "-s" + std::to_string(seed);

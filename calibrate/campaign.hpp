@@ -16,8 +16,9 @@
 
 namespace grainlaw::calibrate {
 
-/// What a test is for: `fit` is read by the fits, `predict` is only ever compared with a prediction.
-enum class Role { fit, predict };
+/// What a test is for: `fit` is read by the fits, `memory` by the fit of the jamming density alone (group
+/// memory), `predict` is only ever compared with a prediction.
+enum class Role { fit, predict, memory };
 std::string name_of(Role role);
 
 /// The state a test starts from: one that another test of the campaign passes through and keeps.

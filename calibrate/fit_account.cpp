@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "grainlaw/calibrate/fit_memory_account.hpp"
 #include "grainlaw/calibrate/fit_moduli_account.hpp"
 #include "grainlaw/calibrate/fit_volumetric_account.hpp"
 #include "grainlaw/element/error.hpp"
@@ -282,7 +283,7 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
   account.left_out = folder.left_out;
   account.narrow_P_min = narrow_pressure * selection.P_min;
   for (const TestRecord& test : folder.tests) {
-    if (test.mode == "mixed" || test.mode == "components") {
+    if (test.role != Role::memory && (test.mode == "mixed" || test.mode == "components")) {
       account.left_out.push_back({test.name, test.role, "its path is not of one mode (iso, uni, d2, d3)"});
     }
   }
@@ -297,7 +298,8 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
   account.nu_c = account.nu_c_fitted ? nu_c.value : thesis.value;
   const double nu_c_error = account.nu_c_fitted ? nu_c.stderr_.value_or(0) : thesis.error;
   for (const TestRecord& test : folder.tests) {
-    if (is_shear(test.mode) && !test.sheared_along) fit_shear_test(account, test, selection);
+    if (is_shear(test.mode) && test.role != Role::memory && !test.sheared_along)
+      fit_shear_test(account, test, selection);
   }
   for (const char* mode : {"d2", "d3"}) {
     if (mode == std::string("d3") && !account.run_values.contains(mode)) continue;
@@ -306,6 +308,7 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
   }
   fit_moduli_of(account, folder, reference);
   fit_volumetric_of(account, folder, selection);
+  fit_memory_of(account, folder, reference, selection);
   return account;
 }
 
@@ -318,6 +321,7 @@ Json Account::to_json() const {
   for (const LeftOut& left : left_out) {
     json["left_out"].push_back({{"test", left.name}, {"role", name_of(left.role)}, {"reason", left.reason}});
   }
+  if (memory) json["memory"] = memory_json(*memory, shear_jammings);
   return json;
 }
 

@@ -9,6 +9,7 @@
 
 #include "grainlaw/calibrate/fit_entry.hpp"
 #include "grainlaw/calibrate/fit_input.hpp"
+#include "grainlaw/calibrate/fit_memory.hpp"
 #include "grainlaw/calibrate/fit_moduli.hpp"
 #include "grainlaw/calibrate/fit_parameters.hpp"
 #include "grainlaw/calibrate/fit_selection.hpp"
@@ -27,8 +28,11 @@ struct Account {
   std::map<std::string, std::map<ShearQuantity, std::vector<RunValue>>> run_values;  ///< what it was fitted to
   double nu_c = 0;                                            ///< of Eq. 2.20: that of the isotropic pressure
   bool nu_c_fitted = false;
-  std::optional<ModuliFit> moduli;  ///< none where no test has a table of moduli
-  bool moduli_nu_c_fitted = false;  ///< the nu_c that its B counts from is that of the d2 tests
+  std::optional<ModuliFit> moduli;           ///< none where no test has a table of moduli
+  bool moduli_nu_c_fitted = false;           ///< the nu_c that its B counts from is that of the d2 tests
+  std::vector<CycleDensity> cycles;          ///< of the tests of role memory
+  std::vector<ShearJamming> shear_jammings;  ///< likewise
+  std::optional<MemoryFit> memory;           ///< none where no test has that role
 
   std::optional<VolumetricFit> volumetric;  ///< none where no sheared packing changed its volume alone
 

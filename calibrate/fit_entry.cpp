@@ -33,17 +33,19 @@ Json parameter_json(const FitEntry& entry, std::size_t i) {
 Json data_json(const FitEntry& entry) {
   Json data = Json::array();
   for (const FitSeries& series : entry.problem.series) {
-    Json x = Json::array(), y = Json::array(), error = Json::array();
+    Json x = Json::array(), y = Json::array(), error = Json::array(), known = Json::array();
     bool errors = true;
     for (const FitPoint& p : series.points) {
       x.push_back(p.x);
       y.push_back(p.y);
       error.push_back(p.error);
+      known.push_back(p.known);
       errors = errors && p.error > 0;
     }
     if (series.points.empty()) continue;
     data.push_back({{"test", series.test}, {"x", x}, {"y", y}});
     if (errors) data.back()["error"] = error;
+    if (!entry.known_name.empty()) data.back()[entry.known_name] = known;
   }
   return data;
 }

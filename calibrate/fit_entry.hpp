@@ -25,6 +25,7 @@ struct FitEntry {
   FitResult result;
   KnownValues thesis;                ///< the thesis's values by parameter name, where it has them
   std::optional<double> curve_from;  ///< the curve begins here, if the data begin later
+  std::string known_name;            ///< of that quantity, where the data are to tell it; else empty
   std::function<double(double)>
       known_at;               ///< the law's second measured quantity over x, for the curve; may be empty
   std::vector<double> shift;  ///< of each parameter where the selection starts at four times the pressure;

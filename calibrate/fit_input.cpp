@@ -143,6 +143,8 @@ RecordFolder read_campaign(const fs::path& dir) {
       out.tests.push_back(read_record(record, test.role));
       out.tests.back().test = test.name;
       out.tests.back().seed = std::to_string(seed);
+      if (test.from)
+        out.tests.back().from = RecordOrigin{record_name(test.from->test, seed), test.from->segment};
     }
   }
   return out;

@@ -14,6 +14,12 @@
 
 namespace grainlaw::calibrate {
 
+/// The record that kept the state a test starts from, and the leg of its path where that lies.
+struct RecordOrigin {
+  std::string record;  ///< "iso-s1"
+  std::size_t leg = 0;
+};
+
 struct TestRecord {
   std::string name;  ///< of its directory, "d2-0.7-s1"
   std::string test;  ///< "d2-0.7"
@@ -29,7 +35,8 @@ struct TestRecord {
   /// from; none where it was not, or where these records are not beside it.
   std::optional<StrainTensor> sheared_along;
   Record rows;
-  std::optional<Record> moduli;  ///< of states along the path, where moduli.csv is kept
+  std::optional<Record> moduli;      ///< of states along the path, where moduli.csv is kept
+  std::optional<RecordOrigin> from;  ///< none: a packing as prepared, or nothing says
 };
 
 /// A record that should be there and is not, or one that no fit takes, and why.

@@ -46,6 +46,14 @@ const Keys<MemoryLaws> memory_keys{
     {"alpha_phi", &MemoryLaws::alpha_phi}, {"alpha", &MemoryLaws::alpha},
     {"eps0", &MemoryLaws::eps0},           {"eps0_R", &MemoryLaws::eps0_R}};
 
+const Keys<MemoryLaws> over_compression_keys{{"phi_SJ", &MemoryLaws::phi_SJ},
+                                             {"mu", &MemoryLaws::mu},
+                                             {"beta", &MemoryLaws::beta},
+                                             {"alpha_max", &MemoryLaws::alpha_max},
+                                             {"alpha_phi", &MemoryLaws::alpha_phi}};
+const Keys<MemoryLaws> shear_jamming_keys{{"alpha", &MemoryLaws::alpha}, {"eps0", &MemoryLaws::eps0}};
+const Keys<MemoryLaws> reversal_keys{{"eps0_R", &MemoryLaws::eps0_R}};
+
 std::optional<double> find(const KnownValues& known, const std::string& name) {
   const auto found = known.find(name);
   return found == known.end() ? std::nullopt : std::optional(found->second.value);
@@ -198,6 +206,12 @@ KnownValues Reference::moduli_values() const {
 
 KnownValues Reference::thesis_moduli() const { return same_material_ ? moduli_values() : KnownValues{}; }
 
+KnownValues Reference::memory_values() const {
+  return set_ && set_->memory ? values_of(*set_->memory, memory_keys) : KnownValues{};
+}
+
+KnownValues Reference::thesis_memory() const { return same_material_ ? memory_values() : KnownValues{}; }
+
 Parameter Reference::fabric_factor() const {
   Parameter g3 = assumed(fabric_size_factor(material_.w), "g3", "Eq. 3.8 for w = " + to_text(material_.w),
                          thesis_moduli());
@@ -249,6 +263,18 @@ std::optional<model::VolumetricLaws> volumetric_laws(const VolumetricFit& fit, c
   if (!fit.decompression.ran || !fit.decompression.determined()) return std::nullopt;
   return model::VolumetricLaws{from_estimate(fit.compression["compression"], {}, reference, ""),
                                from_estimate(fit.decompression["decompression"], {}, reference, "")};
+}
+
+std::optional<MemoryLaws> memory_laws(const MemoryFit& fit, const Reference& reference) {
+  const KnownValues fallback = reference.memory_values(), thesis = reference.thesis_memory();
+  MemoryLaws law;
+  const bool known = fill(law, over_compression_keys, fit.over_compression, fallback, thesis, reference) &&
+                     fill(law, shear_jamming_keys, fit.shear, fallback, thesis, reference) &&
+                     fill(law, reversal_keys, fit.reversal, fallback, thesis, reference);
+  if (!known) return std::nullopt;
+  const FitEstimate& phi_cr = fit.reversal["phi_cr"];
+  if (fit.reversal.ran && phi_cr.determined) law.phi_cr = from_estimate(phi_cr, thesis, reference, "");
+  return law;
 }
 
 std::optional<SaturationLaw> saturation_law(const FitResult& fit, const KnownValues& fallback,

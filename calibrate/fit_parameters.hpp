@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "grainlaw/calibrate/fit_memory.hpp"
 #include "grainlaw/calibrate/fit_moduli.hpp"
 #include "grainlaw/calibrate/fit_packing.hpp"
 #include "grainlaw/calibrate/fit_problem.hpp"
@@ -32,6 +33,9 @@ class Reference {
   /// Group moduli by parameter name, likewise.
   KnownValues moduli_values() const;
   KnownValues thesis_moduli() const;
+  /// Group memory, likewise.
+  KnownValues memory_values() const;
+  KnownValues thesis_memory() const;
   /// The groups as a whole, where no fit fills them; source thesis, or assumed where the set is of another w.
   /// g3 is Eq. 3.8 for the records' own w.
   std::optional<model::ModuliLaws> moduli() const;
@@ -55,6 +59,9 @@ std::optional<model::PackingLaw> packing_law(const PackingFit& fit, const KnownV
 std::optional<model::ModuliLaws> moduli_laws(const ModuliFit& fit, const Reference& reference);
 /// Group volumetric out of its fits; none where the data do not determine both numbers.
 std::optional<model::VolumetricLaws> volumetric_laws(const VolumetricFit& fit, const Reference& reference);
+/// Group memory out of its fits; without phi_cr where the data do not tell it. None if a law could not be
+/// fitted and nobody knows its values.
+std::optional<model::MemoryLaws> memory_laws(const MemoryFit& fit, const Reference& reference);
 /// shear.QUANTITY out of its fit over volume fraction.
 std::optional<model::SaturationLaw> saturation_law(const FitResult& fit, const KnownValues& fallback,
                                                    const KnownValues& thesis, const Reference& reference);

@@ -3,7 +3,9 @@
 #include "grainlaw/calibrate/fit_account.hpp"
 #include "grainlaw/calibrate/fit_checks.hpp"
 #include "grainlaw/calibrate/fit_parameters.hpp"
+#include "grainlaw/calibrate/memory_tables.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/file.hpp"
 
 namespace grainlaw::calibrate {
 namespace {
@@ -76,6 +78,12 @@ std::optional<model::ModuliLaws> moduli(const Account& account, const Reference&
 
 }  // namespace
 
+void FitOutput::write_account(const std::filesystem::path& dir) const {
+  write_file(dir / "fits.json", fits.dump(2) + "\n");
+  if (over_compression) over_compression->write_csv(dir / "over_compression.csv");
+  if (shear_jamming) shear_jamming->write_csv(dir / "shear_jamming.csv");
+}
+
 FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::path& thesis,
                       const Selection& selection) {
   const RecordFolder folder = read_records(dir);
@@ -95,7 +103,9 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
   if (account.density.contains("d3")) out.parameters.shear_axial = shear_laws(account, "d3", reference);
   out.parameters.moduli = moduli(account, reference);
   if (account.volumetric) out.parameters.volumetric = volumetric_laws(*account.volumetric, reference);
-  out.parameters.memory = reference.memory();
+  out.parameters.memory = account.memory ? memory_laws(*account.memory, reference) : reference.memory();
+  if (!account.cycles.empty()) out.over_compression = over_compression_table(account.cycles);
+  if (!account.shear_jammings.empty()) out.shear_jamming = shear_jamming_table(account.shear_jammings);
   out.parameters.closure = {"iso", out.parameters.isotropic.contains("d2") ? "d2" : "iso", false};
   out.fits = account.to_json();
   out.fits["checks"] = physics_checks(account);

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "grainlaw/calibrate/fit_selection.hpp"
 #include "grainlaw/element/json.hpp"
+#include "grainlaw/element/record.hpp"
 #include "grainlaw/model/parameters.hpp"
 
 namespace grainlaw::calibrate {
@@ -13,6 +15,12 @@ namespace grainlaw::calibrate {
 struct FitOutput {
   model::ParameterSet parameters;
   Json fits;  ///< fits.json, see docs/fits.md
+  /// over_compression.csv and shear_jamming.csv (memory_tables.hpp); none where no test of role memory has
+  /// any.
+  std::optional<Record> over_compression, shear_jamming;
+
+  /// Writes fits.json and these tables into a directory.
+  void write_account(const std::filesystem::path& dir) const;
 };
 
 /// Fits all records of `dir`: the output directory of a campaign (campaign.json says each test's role), or

@@ -56,14 +56,10 @@ std::string number(double value) { return to_text(value); }
 
 }  // namespace
 
-PackingSeries unloading_branch(const TestRecord& test, const Selection& selection, Counted& counted) {
+PackingSeries unloading_leg(const TestRecord& test, std::size_t leg, const Selection& selection,
+                            Counted& counted) {
   PackingSeries series{test.name, test.seed, {}};
   counted = {};
-  const std::size_t leg = last_unloading_leg(test);
-  if (leg == test.legs.size()) {
-    counted.reason = "its path never decreases the volume fraction, and these laws are fitted to unloading";
-    return series;
-  }
   for (const std::size_t row : rows_of_legs(test, leg, leg + 1)) {
     const bool take =
         test.rows["P"][row] >= selection.P_min && at_rest(test, row, selection) && has_contacts(test, row);
@@ -73,6 +69,14 @@ PackingSeries unloading_branch(const TestRecord& test, const Selection& selectio
   if (counted.rows == 0)
     counted.reason = "no row of its unloading is jammed (P >= " + number(selection.P_min) + ")";
   return series;
+}
+
+PackingSeries unloading_branch(const TestRecord& test, const Selection& selection, Counted& counted) {
+  const std::size_t leg = last_unloading_leg(test);
+  if (leg < test.legs.size()) return unloading_leg(test, leg, selection, counted);
+  counted = {};
+  counted.reason = "its path never decreases the volume fraction, and these laws are fitted to unloading";
+  return {test.name, test.seed, {}};
 }
 
 std::string unloading_rule(const Selection& selection) {

@@ -30,6 +30,10 @@ struct Counted {
   std::string reason;        ///< why nothing was taken, else empty
 };
 
+/// Rows of one leg, with P >= P_min and E_k/E_p <= Ek_over_Ep_max.
+PackingSeries unloading_leg(const TestRecord& test, std::size_t leg, const Selection& selection,
+                            Counted& counted);
+
 /// Rows of the last leg in which nu decreases, with P >= P_min and E_k/E_p <= Ek_over_Ep_max.
 PackingSeries unloading_branch(const TestRecord& test, const Selection& selection, Counted& counted);
 std::string unloading_rule(const Selection& selection);

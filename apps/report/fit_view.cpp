@@ -64,7 +64,7 @@ FitView read_fit(const Json& json) {
     fit.row = parts[1];
     fit.family = parts.size() > 2 ? parts[2] : fit.y_name;
   }
-  if (parts[0] == "moduli" && parts.size() > 1) {
+  if ((parts[0] == "moduli" || parts[0] == "memory") && parts.size() > 1) {
     fit.group = parts[0];
     fit.family = parts[1];
   }

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 
 #include "grainlaw/apps/report/figure.hpp"
@@ -29,21 +27,6 @@ constexpr std::array<Axes, 6> all_axes{{
     {"moduli.G", "{/:Italic σ}*_{dev} {/:Italic F}_{dev} (–)",
      "{/:Italic G}/{/:Italic B} − ({/:Italic G}/{/:Italic B})_{ini} (–)"},
 }};
-
-/// From dark to bright as `share` goes from 0 to 1: loose to dense.
-std::string ramp(double share) {
-  constexpr std::array<std::array<int, 3>, 4> anchors{
-      {{0x44, 0x01, 0x54}, {0x3b, 0x52, 0x8b}, {0x21, 0x91, 0x8c}, {0x5e, 0xc9, 0x62}}};
-  const double at = std::clamp(share, 0.0, 1.0) * (anchors.size() - 1);
-  const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(at), anchors.size() - 2);
-  const double t = at - static_cast<double>(i);
-  std::array<char, 8> text{};
-  std::array<int, 3> c{};
-  for (std::size_t k = 0; k < 3; ++k)
-    c[k] = static_cast<int>(std::lround((1 - t) * anchors[i][k] + t * anchors[i + 1][k]));
-  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", c[0], c[1], c[2]);
-  return text.data();
-}
 
 /// Volume fraction by test, from the records; tests without one are left out.
 std::map<std::string, double> densities(const Inputs& inputs, const std::vector<const FitView*>& fits) {

@@ -210,6 +210,18 @@ Markup moduli_table(const Entries& entries) {
                  "g3"});
 }
 
+/// The same of the memory.
+Markup memory_table(const Entries& entries) {
+  const bool fitted = std::any_of(entries.begin(), entries.end(), [](const auto& one) {
+    return one.first[0] == "memory" && one.second.in_set && one.second.source == "fit";
+  });
+  if (!fitted) return {};
+  return "<h3>Memory of the jamming density (Eqs. 5.1 – 5.13), beside chapter 5</h3>\n"_html +
+         matrix(entries, "memory", {""}, {"Value"_html},
+                {"phi_SJ", "alpha_max", "alpha_phi", "mu", "beta", "phi_SJ_sheared", "alpha", "eps0",
+                 "eps0_R", "phi_cr"});
+}
+
 /// A number that was not fitted here, with every row that shares it.
 struct Taken {
   std::string group, name;
@@ -288,7 +300,8 @@ Markup sources_table(const Entries& entries) {
 Markup parameter_tables(const Inputs& inputs, const std::vector<FitView>& fits) {
   const Entries entries = collect(inputs, fits);
   if (entries.empty()) return absent("No parameters: neither parameters.json nor fits.json holds any.");
-  Markup tables = isotropic_table(inputs, entries) + shear_table(entries) + moduli_table(entries);
+  Markup tables =
+      isotropic_table(inputs, entries) + shear_table(entries) + moduli_table(entries) + memory_table(entries);
   tables += element(
       "p",
       "Each cell: our value ± one standard error; under it the thesis's value and our difference from it in "

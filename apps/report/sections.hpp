@@ -34,6 +34,9 @@ Markup shear_run_figures(const Inputs& inputs, const std::vector<FitView>& fits)
 Markup saturation_figure(const std::vector<FitView>& fits);
 /// The moduli of states along D2, a panel per law; nothing where there are none.
 Markup moduli_figures(const Inputs& inputs, const std::vector<FitView>& fits);
+/// The jamming density over cycles and amplitudes of over-compression, and the strains that jam: the figures
+/// of chapter 5; nothing where there are none.
+Markup memory_figures(const std::vector<FitView>& fits);
 /// Fits of any other kind, one figure each.
 Markup other_figures(const std::vector<FitView>& fits);
 

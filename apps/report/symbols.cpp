@@ -1,6 +1,9 @@
 #include "grainlaw/apps/report/symbols.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 
 namespace grainlaw::report {
 namespace {
@@ -122,6 +125,8 @@ const std::vector<Symbol> memory{
      "Shear strain over which phi_J falls to phi_SJ."},
     {"memory.eps0_R", "<var>ε</var><sub>0,R</sub>", "{/:Italic ε}_{0,R}", "–",
      "The same after a reversal of shear."},
+    {"memory.phi_SJ_sheared", "<var>φ</var><sub>SJ</sub>", "{/:Italic φ}_{SJ}", "–",
+     "The same from the strains that jam, alone (Eq. 5.2)."},
     {"memory.phi_cr", "<var>φ</var><sub>cr</sub>", "{/:Italic φ}_{cr}", "–",
      "Density below which a reversal of shear unjams the packing."},
     {"memory.eps_c", "<var>ε</var><sub>c</sub>", "{/:Italic ε}_c", "–",
@@ -249,6 +254,20 @@ std::string nth_colour(std::size_t n) {
 std::string seed_grey(std::size_t n) {
   static const std::array<const char*, 3> greys{"#666666", "#b0b0b0", "#8a8a8a"};
   return greys[n % greys.size()];
+}
+
+std::string ramp(double share) {
+  constexpr std::array<std::array<int, 3>, 4> anchors{
+      {{0x44, 0x01, 0x54}, {0x3b, 0x52, 0x8b}, {0x21, 0x91, 0x8c}, {0x5e, 0xc9, 0x62}}};
+  const double at = std::clamp(share, 0.0, 1.0) * (anchors.size() - 1);
+  const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(at), anchors.size() - 2);
+  const double t = at - static_cast<double>(i);
+  std::array<char, 8> text{};
+  std::array<int, 3> c{};
+  for (std::size_t k = 0; k < 3; ++k)
+    c[k] = static_cast<int>(std::lround((1 - t) * anchors[i][k] + t * anchors[i + 1][k]));
+  std::snprintf(text.data(), text.size(), "#%02x%02x%02x", c[0], c[1], c[2]);
+  return text.data();
 }
 
 }  // namespace grainlaw::report

@@ -53,6 +53,8 @@ std::string form_colour(const std::string& form);
 std::string nth_colour(std::size_t n);
 /// Shade of grey for the DEM's points of the n-th seed; after three they begin again.
 std::string seed_grey(std::size_t n);
+/// From dark to bright as `share` goes from 0 to 1: loose to dense.
+std::string ramp(double share);
 inline constexpr const char* measured_colour = "#808080";
 inline constexpr const char* ink = "black";  ///< drawn in the page's own text colour
 

@@ -67,13 +67,14 @@ Markup material_sentence(const Inputs& inputs) {
 }
 
 Markup counts_sentence(const Inputs& inputs) {
-  std::size_t done = 0, to_fit = 0, to_predict = 0;
+  std::size_t done = 0, to_fit = 0, to_predict = 0, of_memory = 0;
   std::set<std::string> tests;
   for (const Run& run : inputs.runs) {
     if (!run.unfinished) ++done;
     if (!tests.insert(run.test).second) continue;
     if (run.role == "fit") ++to_fit;
     if (run.role == "predict") ++to_predict;
+    if (run.role == "memory") ++of_memory;
   }
   Markup sentence = text(std::to_string(done)) + text(done == 1 ? " run of " : " runs of ") +
                     text(std::to_string(tests.size())) + " element tests"_html;
@@ -81,6 +82,9 @@ Markup counts_sentence(const Inputs& inputs) {
     sentence += ": the law is fitted to "_html + text(std::to_string(to_fit)) + ", and "_html +
                 text(std::to_string(to_predict)) + " are kept back for it to predict"_html;
   }
+  if (of_memory > 0)
+    sentence += "; "_html + text(std::to_string(of_memory)) +
+                " tell how the jamming density depends on what a packing has been through"_html;
   sentence += ". "_html;
   const auto steps = total(inputs, "particle_steps"), wall = total(inputs, "wall_time_s");
   if (steps && wall && *wall > 0) {
@@ -160,13 +164,14 @@ Markup what_was_run(const Inputs& inputs) {
   Table table = run_table();
   for (const Run& run : inputs.runs) table.row(run_row(inputs, run));
   return campaign_paragraph(inputs) + table.html("small") +
-         element("p",
-                 "Modes: ISO compresses alike in all directions, UNI along one, D2 compresses one direction "
-                 "and extends "
-                 "another at constant volume, D3 compresses one and extends two. A test of role “predict” is "
-                 "never read "
-                 "by a fit that a prediction uses."_html,
-                 {{"class", "note"}});
+         element(
+             "p",
+             "Modes: ISO compresses alike in all directions, UNI along one, D2 compresses one direction "
+             "and extends "
+             "another at constant volume, D3 compresses one and extends two. A test of role “predict” is "
+             "never read "
+             "by a fit that a prediction uses, one of role “memory” only by that of the jamming density."_html,
+             {{"class", "note"}});
 }
 
 }  // namespace grainlaw::report

@@ -47,8 +47,8 @@ TEST_F(Program, VersionNamesCommitCompilerAndLibraries) {
 
 TEST_F(Program, HelpHasAnExampleForEachCommand) {
   const std::string help = run({"--help"}).out;
-  for (const char* name :
-       {"calibrate", "simulate", "predict", "fit", "polish", "report", "export", "replay", "bench"}) {
+  for (const char* name : {"calibrate", "simulate", "predict", "fit", "polish", "report", "probe",
+                           "infer-phij", "export", "replay", "bench"}) {
     EXPECT_THAT(help, HasSubstr(std::string("  grainlaw ") + name));
     const Outcome own = run({name, "--help"});
     EXPECT_EQ(own.status, 0);

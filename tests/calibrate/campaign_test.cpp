@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "campaign_examples.hpp"
@@ -36,6 +37,28 @@ TEST(Campaign, ReadsTheQuickCampaign) {
   for (const auto& test : campaign.tests)
     d2_states += test.name.starts_with("d2-0.") && test.role == Role::fit;
   EXPECT_GE(d2_states, 5);
+}
+
+TEST(Campaign, TheQuickOneMeasuresTheMemory) {
+  const auto campaign = Campaign::load(GRAINLAW_DATA_DIR "/campaigns/quick.json");
+  std::size_t over_compressions = 0, most_cycles = 0, shear = 0;
+  for (const auto& test : campaign.tests) {
+    if (test.role != Role::memory) continue;
+    (test.from ? shear : over_compressions) += 1;
+    if (!test.from) most_cycles = std::max(most_cycles, test.path.segments.size() / 2);
+    EXPECT_GE(test.seeds.size(), 3u) << test.name;  // errors come from the scatter over seeds
+  }
+  EXPECT_GE(over_compressions, 3u);
+  EXPECT_GE(most_cycles, 10u);
+  EXPECT_GE(shear, 3u);
+}
+
+TEST(Campaign, TheRoleOfMemoryIsReadAndWritten) {
+  std::string test = iso;
+  test.replace(test.find("fit"), 3, "memory");
+  const auto campaign = campaign_of(with_tests(test));
+  EXPECT_EQ(campaign.role_of("iso"), Role::memory);
+  EXPECT_EQ(campaign.to_json().at("tests").at(0).at("role"), "memory");
 }
 
 TEST(Campaign, WritesOutListsOfStates) {
@@ -237,7 +260,7 @@ TEST(Campaign, RefusesWhatNobodyAskedFor) {
   std::string test = iso;
   test.replace(test.find("fit"), 3, "fits");
   EXPECT_THAT(refusal(with_tests(test)),
-              HasSubstr(R"(tests[0].role: must be one of fit, predict, got "fits")"));
+              HasSubstr(R"(tests[0].role: must be one of fit, predict, memory, got "fits")"));
 }
 
 }  // namespace

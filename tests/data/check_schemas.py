@@ -123,6 +123,14 @@ def check_examples(schemas, data):
         reason = schemas.complaint(f"{file.stem}.schema.json", load(file)) if recorded else "under no schema"
         if reason:
             faults.append(f"{file.relative_to(data)}: {reason}")
+    for file in sorted((data / "memory").rglob("*.csv")):
+        count += 1
+        kind = file.stem.split(".")[0].split("-")[0]
+        for row in rows_of(file):
+            reason = schemas.complaint(f"{kind}.schema.json", row)
+            if reason:
+                faults.append(f"{file.relative_to(data)}: {reason}")
+                break
     return faults, count
 
 

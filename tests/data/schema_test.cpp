@@ -6,6 +6,7 @@
 #include <set>
 
 #include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/calibrate/memory_tables.hpp"
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/provenance.hpp"
 #include "grainlaw/dem/scene.hpp"
@@ -116,6 +117,15 @@ TEST(Schema, KeysOfAReplay) {
   const Json file = schema("replay"), written = replay.to_json();
   EXPECT_EQ(keys(file["properties"]), keys(written));
   EXPECT_EQ(keys(file["properties"]["state"]["properties"]), keys(written["state"]));
+}
+
+TEST(Schema, ColumnsOfTheTablesOfMemory) {
+  EXPECT_EQ(keys(schema("over_compression")["properties"]), calibrate::over_compression_table({}).columns());
+  EXPECT_EQ(keys(schema("shear_jamming")["properties"]), calibrate::shear_jamming_table({}).columns());
+  EXPECT_EQ(schema("over_compression")["required"].get<std::vector<std::string>>(),
+            calibrate::over_compression_table({}).columns());
+  EXPECT_EQ(schema("shear_jamming")["required"].get<std::vector<std::string>>(),
+            calibrate::shear_jamming_table({}).columns());
 }
 
 TEST(Schema, ColumnsOfATableOfModuli) { EXPECT_EQ(keys(schema("moduli")["properties"]), moduli_columns()); }

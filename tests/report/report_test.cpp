@@ -171,6 +171,53 @@ TEST_F(ReportTest, ShowsModuliBesideTable4_1) {
   EXPECT_THAT(html, Not(HasSubstr("<var>a</var><sub>I</sub> (moduli)</td>")));
 }
 
+TEST_F(ReportTest, ShowsTheMemoryOfTheJammingDensity) {
+  test::write_synthetic_campaign(dir_);
+  EXPECT_THAT(report_html(dir_), Not(HasSubstr("Memory of the jamming density</h3>")));
+  const auto parameter = [](const char* name, double value, double thesis) {
+    return Json{
+        {"name", name}, {"value", value}, {"stderr", 0.1 * value}, {"thesis", thesis}, {"determined", true}};
+  };
+  const auto fit_of = [](const char* name, const char* x, Json points, Json parameters) {
+    const Json line{{"x", {0.657, 0.66}}, {"y", {0.2, 0.1}}};
+    return Json{{"name", name},
+                {"law", "law of " + std::string(name)},
+                {"role", "memory"},
+                {"mode", "iso"},
+                {"x", {{"name", x}, {"label", x}}},
+                {"y", {{"name", "y"}, {"label", "y"}}},
+                {"data", Json::array({std::move(points)})},
+                {"curve", line},
+                {"thesis_curve", line},
+                {"parameters", std::move(parameters)}};
+  };
+  edit("fits.json", [&](Json& json) {
+    json["fits"].push_back(fit_of(
+        "memory.phi_J", "phi_max",
+        {{"test", "oc-s1"}, {"x", {0.82, 0.82, 0.68}}, {"y", {0.665, 0.6666, 0.661}}, {"M", {1, 10, 1}}},
+        {parameter("phi_SJ", 0.657, 0.6567), parameter("alpha_max", 0.019, 0.02),
+         parameter("alpha_phi", 0.3, 0.3), parameter("mu", 1, 1), parameter("beta", 0.4, 0.3)}));
+    json["fits"].push_back(
+        fit_of("memory.eps_SJ", "nu",
+               {{"test", "sj-s1"}, {"x", {0.658, 0.66}}, {"y", {0.15, 0.1}}, {"phi_J0", {0.665, 0.665}}},
+               {parameter("phi_SJ_sheared", 0.6569, 0.6567), parameter("alpha", 1.3, 1.37),
+                parameter("eps0", 0.11, 0.102)}));
+    json["fits"].push_back(fit_of("memory.eps_SJ_R", "nu",
+                                  {{"test", "sj-s1"}, {"x", {0.658, 0.66}}, {"y", {0.2, 0}}},
+                                  {parameter("eps0_R", 0.16, 0.17), parameter("phi_cr", 0.662, 0.66)}));
+  });
+  edit("parameters.json", [](Json& json) {
+    json["memory"]["eps0"] = {
+        {"value", 0.11}, {"stderr", 0.011}, {"unit", "1"}, {"source", "fit"}, {"thesis", 0.102}};
+  });
+  const std::string html = report_html(dir_);
+  EXPECT_THAT(html, HasSubstr("<h3>Memory of the jamming density</h3>"));
+  EXPECT_THAT(html, HasSubstr("<h3>Memory of the jamming density (Eqs. 5.1 – 5.13), beside chapter 5</h3>"));
+  EXPECT_THAT(html, HasSubstr("0.110 ± 0.011</span><div class=\"under\">thesis 0.102"));
+  EXPECT_THAT(html, HasSubstr("φ_max = 0.82"));
+  EXPECT_THAT(html, Not(HasSubstr("NaN")));
+}
+
 TEST_F(ReportTest, MarksFitsThatNoPredictionReads) {
   test::write_synthetic_campaign(dir_);
   EXPECT_THAT(page().text, HasSubstr("UNIfor comparison only"));
