@@ -54,11 +54,21 @@ std::optional<std::string> objection(const Laws& laws, Form form, const Stretch&
   return std::nullopt;
 }
 
-Contacts contacts_of(const Laws& laws, const State& state) {
+namespace {
+
+Contacts contacts_along(const ContactCurve& curve, double g3, const State& state) {
   if (!state.jammed) return {0, 0, std::numeric_limits<double>::quiet_NaN(), 0};
-  const double nu = at_least_isostatic(laws.contacts, state.nu), C = coordination(laws.contacts, nu);
-  return {laws.g3 * state.nu * C, C, corrected_coordination(laws.contacts, nu),
-          1 - rattlers(laws.contacts, nu)};
+  const double nu = at_least_isostatic(curve, state.nu), C = coordination(curve, nu);
+  return {g3 * state.nu * C, C, corrected_coordination(curve, nu), 1 - rattlers(curve, nu)};
+}
+
+}  // namespace
+
+Contacts contacts_of(const Law& law, const State& state) {
+  const Laws& laws = laws_of(law);
+  if (const auto* memory = std::get_if<Memory>(&law))  // contacts go with phi_J
+    return contacts_along(memory->curve_of(state.history.phi_H, state.memory).contacts, laws.g3, state);
+  return contacts_along(laws.contacts, laws.g3, state);
 }
 
 }  // namespace grainlaw::model

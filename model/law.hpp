@@ -71,7 +71,6 @@ inline std::optional<std::string> objection(const Law& law, const Stretch& stret
 struct Contacts {
   double F_v, C, C_star, f_NR;
 };
-Contacts contacts_of(const Laws& laws, const State& state);
-inline Contacts contacts_of(const Law& law, const State& state) { return contacts_of(laws_of(law), state); }
+Contacts contacts_of(const Law& law, const State& state);
 
 }  // namespace grainlaw::model

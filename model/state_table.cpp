@@ -33,7 +33,9 @@ CoaxialState unchecked(const StateRow& row) {
                          .S_F_I = row[12],
                          .s_0 = row[13],
                          .F_0 = row[14],
-                         .eps_dev_0 = row[15]}},
+                         .eps_dev_0 = row[15]},
+           .history = {row[16], row[17], row[18]},
+           .memory = row[19]},
           row[9]};
 }
 
@@ -63,7 +65,11 @@ std::array<double, state_length> row_of(const CoaxialState& state) {
           d.S_F_I,
           d.s_0,
           d.F_0,
-          d.eps_dev_0};
+          d.eps_dev_0,
+          s.history.phi_H,
+          s.history.phi_max,
+          s.history.nu,
+          s.memory};
 }
 
 CoaxialState state_of(StateRow row) {
@@ -77,6 +83,7 @@ CoaxialState state_of(StateRow row) {
   must(row[10] == 0 || std::abs(row[10]) == 1, row, 10, "-1, 0 or 1");
   must(row[11] > 0, row, 11, "> 0");
   must(row[12] > 0, row, 12, "> 0");
+  must(row[19] >= 0 && row[19] <= 1, row, 19, "in [0, 1]");
   return unchecked(row);
 }
 

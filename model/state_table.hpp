@@ -31,7 +31,11 @@ inline constexpr std::array state_names{
     "S_F_I",       ///< |1 - q F_dev/F_max| there
     "s_dev_0",     ///< s_dev there (Eq. 2.17)
     "F_dev_0",     ///< F_dev there (Eq. 2.18)
-    "eps_dev_0"};  ///< eps_dev there
+    "eps_dev_0",   ///< eps_dev there
+    "phi_H",       ///< form memory: phi_J of the isotropic packing; 0 in the others, as what follows
+    "phi_max",     ///< largest volume fraction seen
+    "phi_H_nu",    ///< volume fraction where this is so
+    "memory"};     ///< of shear, in [0, 1]
 inline constexpr std::size_t state_length = state_names.size();
 using StateRow = std::span<const double, state_length>;
 

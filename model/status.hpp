@@ -10,6 +10,7 @@ struct Status {
   enum class Code {
     ok,          ///< the end was reached
     unjammed,    ///< the end was reached, and the point carries no stress there: P = 0
+    limit,       ///< a prescribed stress or strain cannot be reached; the state is where it ended on the way
     failed,      ///< the integration stopped; the state is that of the last row
     not_coaxial  ///< the strain has another axis than the point, which has not moved
   };
@@ -25,6 +26,8 @@ inline std::string name_of(Status::Code code) {
       return "ok";
     case Status::Code::unjammed:
       return "unjammed";
+    case Status::Code::limit:
+      return "limit";
     case Status::Code::failed:
       return "failed";
     case Status::Code::not_coaxial:

@@ -14,12 +14,12 @@ using testing::HasSubstr;
 
 TEST_F(CInterface, TheStateByName) {
   EXPECT_EQ(grainlaw_state_version(), 1);
-  EXPECT_EQ(grainlaw_state_length(law), 16U);
+  EXPECT_EQ(grainlaw_state_length(law), 20U);
   for (std::size_t i = 0; i < state.size(); ++i)
     EXPECT_EQ(grainlaw_state_index(law, grainlaw_state_name(law, i)), static_cast<int>(i));
   EXPECT_EQ(grainlaw_state_index(law, "sigma"), -1);
   EXPECT_EQ(grainlaw_state_index(law, nullptr), -1);
-  EXPECT_EQ(grainlaw_state_name(law, 16), nullptr);
+  EXPECT_EQ(grainlaw_state_name(law, 20), nullptr);
   EXPECT_EQ(grainlaw_state_length(nullptr), 0U);
   EXPECT_EQ(entry("version"), 1);
   EXPECT_EQ(entry("nu"), 0.711);
@@ -65,14 +65,14 @@ TEST_F(CInterface, BadStarts) {
   const auto start = [&](const char* const* names, const double* values, double* to, std::size_t length) {
     return grainlaw_start(context, 1, names, values, to, length);
   };
-  expect_refused(start(nullptr, &value, state.data(), 16), GRAINLAW_BAD_ARGUMENT, "names: must not be NULL",
+  expect_refused(start(nullptr, &value, state.data(), 20), GRAINLAW_BAD_ARGUMENT, "names: must not be NULL",
                  before);
-  expect_refused(start(&name, nullptr, state.data(), 16), GRAINLAW_BAD_ARGUMENT, "values: must not be NULL",
+  expect_refused(start(&name, nullptr, state.data(), 20), GRAINLAW_BAD_ARGUMENT, "values: must not be NULL",
                  before);
-  expect_refused(start(&name, &value, nullptr, 16), GRAINLAW_BAD_ARGUMENT, "state: must not be NULL", before);
-  expect_refused(start(&name, &value, state.data(), 15), GRAINLAW_BAD_ARGUMENT,
-                 "length: must be grainlaw_state_length() = 16, got 15", before);
-  EXPECT_EQ(grainlaw_start(nullptr, 1, &name, &value, state.data(), 16), GRAINLAW_BAD_ARGUMENT);
+  expect_refused(start(&name, &value, nullptr, 20), GRAINLAW_BAD_ARGUMENT, "state: must not be NULL", before);
+  expect_refused(start(&name, &value, state.data(), 19), GRAINLAW_BAD_ARGUMENT,
+                 "length: must be grainlaw_state_length() = 20, got 19", before);
+  EXPECT_EQ(grainlaw_start(nullptr, 1, &name, &value, state.data(), 20), GRAINLAW_BAD_ARGUMENT);
 }
 
 TEST_F(CInterface, BadUpdates) {
@@ -83,17 +83,17 @@ TEST_F(CInterface, BadUpdates) {
   const auto refused = [&](int status, const char* why) {
     expect_refused(status, GRAINLAW_BAD_ARGUMENT, why, before);
   };
-  refused(call(nullptr, 16, d2_step.data(), stress.data()), "state: must not be NULL");
-  refused(call(state.data(), 16, nullptr, stress.data()), "strain_increment: must not be NULL");
-  refused(call(state.data(), 16, d2_step.data(), nullptr), "stress: must not be NULL");
+  refused(call(nullptr, 20, d2_step.data(), stress.data()), "state: must not be NULL");
+  refused(call(state.data(), 20, nullptr, stress.data()), "strain_increment: must not be NULL");
+  refused(call(state.data(), 20, d2_step.data(), nullptr), "stress: must not be NULL");
   refused(call(state.data(), 17, d2_step.data(), stress.data()), "length: must be");
   refused(update({0, 0, 0, 0, 0, NAN}), "strain_increment[5]: must be finite, got nan");
   refused(update({INFINITY, 0, 0, 0, 0, 0}), "strain_increment[0]: must be finite, got inf");
-  EXPECT_EQ(grainlaw_update(nullptr, state.data(), 16, d2_step.data(), stress.data(), nullptr),
+  EXPECT_EQ(grainlaw_update(nullptr, state.data(), 20, d2_step.data(), stress.data(), nullptr),
             GRAINLAW_BAD_ARGUMENT);
   EXPECT_STREQ(grainlaw_message(nullptr), "the context is NULL");
   EXPECT_EQ(grainlaw_stress(context, state.data(), 3, stress.data()), GRAINLAW_BAD_ARGUMENT);
-  EXPECT_EQ(grainlaw_stress(context, state.data(), 16, nullptr), GRAINLAW_BAD_ARGUMENT);
+  EXPECT_EQ(grainlaw_stress(context, state.data(), 20, nullptr), GRAINLAW_BAD_ARGUMENT);
   EXPECT_EQ(grainlaw_context_replay_file(nullptr, "x"), GRAINLAW_BAD_ARGUMENT);
 }
 
@@ -147,7 +147,7 @@ TEST_F(CInterface, BadLaws) {
   };
   bad([](auto& s) { s.size = 8; }, "settings.size: must be");
   bad([](auto& s) { s.form = "coupling"; }, "form: must be one of");
-  bad([](auto& s) { s.form = "coupled+magic"; }, "coupled takes the terms energy");
+  bad([](auto& s) { s.form = "coupled+magic"; }, "coupled takes the terms axial, energy, volumetric");
   bad([](auto& s) { s.form = nullptr; }, "settings.form: must not be NULL");
   bad([](auto& s) { s.rtol = 0; }, "rtol: must be > 0");
   bad([](auto& s) { s.atol = NAN; }, "atol: must be > 0");

@@ -68,7 +68,7 @@ struct Field {
     const std::array names{"nu", "phi_J"};
     for (std::size_t i = 0; i < count; ++i) {
       const std::array values{0.66 + 0.001 * static_cast<double>(i), i % 3 == 0 ? 0.66 : 0.665};
-      EXPECT_GE(grainlaw_start(context, 2, names.data(), values.data(), &states[i * stride], 16), 0);
+      EXPECT_GE(grainlaw_start(context, 2, names.data(), values.data(), &states[i * stride], 20), 0);
       const double e = 1e-4 * (1 + static_cast<double>(i % 7));
       strains.insert(strains.end(), {1e-5 - e, 1e-5 + e, 1e-5, 0, 0, 0});
     }
@@ -88,7 +88,7 @@ TEST_F(CUpdate, ManyPointsAsOneByOne) {
       std::size_t unjammed = 0;
       for (std::size_t i = 0; i < Field::count; ++i) {
         const int status =
-            grainlaw_update(context, &alone.states[i * Field::stride], 16, &alone.strains[6 * i],
+            grainlaw_update(context, &alone.states[i * Field::stride], 20, &alone.strains[6 * i],
                             &alone.stresses[6 * i], slopes ? &alone.tangents[36 * i] : nullptr);
         EXPECT_EQ(field.statuses[i], status);
         if (status == GRAINLAW_UNJAMMED) ++unjammed;
@@ -115,7 +115,7 @@ TEST_F(CUpdate, ManyPointsNameTheFirstThatFails) {
     EXPECT_EQ(field.statuses[42], GRAINLAW_NOT_COAXIAL);
     EXPECT_EQ(field.statuses[90], GRAINLAW_BAD_ARGUMENT);
     for (const std::size_t i : {42, 80, 90}) {
-      EXPECT_TRUE(std::equal(&field.states[i * Field::stride], &field.states[i * Field::stride] + 16,
+      EXPECT_TRUE(std::equal(&field.states[i * Field::stride], &field.states[i * Field::stride] + 20,
                              &before.states[i * Field::stride]));
       EXPECT_EQ(field.stresses[6 * i], 7);
     }
@@ -140,26 +140,26 @@ TEST_F(CUpdate, ManyPointsBadArguments) {
   refused(call(nullptr, 20, e, to, 1), "states: must not be NULL");
   refused(call(s, 20, nullptr, to, 1), "strain_increments: must not be NULL");
   refused(call(s, 20, e, nullptr, 1), "stresses: must not be NULL");
-  refused(call(s, 15, e, to, 1), "stride: must be >= grainlaw_state_length() = 16, got 15");
+  refused(call(s, 19, e, to, 1), "stride: must be >= grainlaw_state_length() = 20, got 19");
   refused(call(s, 20, e, to, 0), "threads: must be >= 1, got 0");
   EXPECT_EQ(grainlaw_update_many(context, 0, s, 20, e, to, nullptr, 2, nullptr, nullptr), GRAINLAW_OK);
 }
 
 TEST_F(CUpdate, AContextPerThreadAndOneLaw) {
   const auto walk = [this](grainlaw_context* own, double sign) {
-    std::vector<double> point(16);
+    std::vector<double> point(20);
     Six there{};
     std::array<double, 36> slopes{};
     const char* name = "nu";
     const double nu = 0.7 + 0.01 * sign;
-    EXPECT_EQ(grainlaw_start(own, 1, &name, &nu, point.data(), 16), GRAINLAW_OK);
+    EXPECT_EQ(grainlaw_start(own, 1, &name, &nu, point.data(), 20), GRAINLAW_OK);
     for (int i = 0; i < 3000; ++i) {
       const double e = (i % 300 < 200 ? sign : -sign) * 1e-4;
       const Six along{-e, e, 0, 0, 0, 0}, off{0, 0, 0, 0, 0, e};
-      EXPECT_EQ(grainlaw_update(own, point.data(), 16, off.data(), there.data(), nullptr),
+      EXPECT_EQ(grainlaw_update(own, point.data(), 20, off.data(), there.data(), nullptr),
                 GRAINLAW_NOT_COAXIAL);
       EXPECT_EQ(
-          grainlaw_update(own, point.data(), 16, along.data(), there.data(), i % 2 ? slopes.data() : nullptr),
+          grainlaw_update(own, point.data(), 20, along.data(), there.data(), i % 2 ? slopes.data() : nullptr),
           GRAINLAW_OK);
     }
     point.insert(point.end(), there.begin(), there.end());
