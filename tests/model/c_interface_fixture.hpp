@@ -69,7 +69,7 @@ class CInterface : public testing::Test {
   /// The status, and that neither state nor stress has changed.
   void expect_refused(int status, int expected, const std::string& why, const std::vector<double>& before) {
     EXPECT_EQ(status, expected) << said();
-    EXPECT_THAT(said(), HasSubstr(why));
+    EXPECT_THAT(said(), testing::HasSubstr(why));
     EXPECT_TRUE(std::equal(state.begin(), state.end(), before.begin(),
                            [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }));
     EXPECT_EQ(stress, untouched);
