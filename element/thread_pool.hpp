@@ -15,13 +15,16 @@ namespace grainlaw {
 /// asleep, so that a team without work costs nothing and one between two steps loses no time.
 class ThreadPool {
  public:
+  /// Throws std::system_error where the system has no more threads.
   explicit ThreadPool(int threads) {
-    for (int t = 1; t < threads; ++t) others_.emplace_back([this, t] { serve(t); });
+    try {
+      for (int t = 1; t < threads; ++t) others_.emplace_back([this, t] { serve(t); });
+    } catch (...) {
+      dismiss();
+      throw;
+    }
   }
-  ~ThreadPool() {
-    start(nullptr, nullptr);
-    for (std::thread& other : others_) other.join();
-  }
+  ~ThreadPool() { dismiss(); }
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
@@ -39,6 +42,11 @@ class ThreadPool {
   }
 
  private:
+  void dismiss() {
+    start(nullptr, nullptr);
+    for (std::thread& other : others_) other.join();
+  }
+
   using Job = void (*)(void*, int);
 
   void start(Job job, void* function) {

@@ -9,9 +9,11 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "grainlaw.h"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/thread_pool.hpp"
 #include "grainlaw/model/coaxial.hpp"
 #include "grainlaw/model/state_table.hpp"
 
@@ -21,7 +23,8 @@ struct grainlaw_law {
 
 struct grainlaw_context {
   std::shared_ptr<const grainlaw::model::CoaxialLaw> law;
-  grainlaw::model::CoaxialLaw::Workspace workspace;
+  std::vector<grainlaw::model::CoaxialLaw::Workspace> workspaces;  // one per thread, at least one
+  std::unique_ptr<grainlaw::ThreadPool> team;                      // of the last call with several threads
   std::string replay_file;
   char message[1024] = "";
 };

@@ -143,7 +143,7 @@ int grainlaw_context_create(const grainlaw_law* law, grainlaw_context** context)
   if (context) *context = nullptr;
   if (!law || !context) return GRAINLAW_BAD_ARGUMENT;
   return guarded(Message{nullptr, 0}, GRAINLAW_FAILED, [&] {
-    *context = new grainlaw_context{law->law, {}, {}};
+    *context = new grainlaw_context{law->law, std::vector<CoaxialLaw::Workspace>(1), {}, {}};
     return GRAINLAW_OK;
   });
 }

@@ -2,9 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <memory>
 #include <string>
-#include <system_error>
-#include <thread>
 #include <vector>
 
 #include "grainlaw/element/file.hpp"
@@ -65,7 +64,7 @@ int update_aloud(grainlaw_context& context, double* state, const double* increme
                  double* tangent, const std::string& who) {
   Status status;
   try {
-    status = update(*context.law, context.workspace, state, increment, stress, tangent);
+    status = update(*context.law, context.workspaces.front(), state, increment, stress, tangent);
   } catch (const Error& error) {
     throw Error(who + error.what());
   }
@@ -121,25 +120,24 @@ grainlaw_outcome update_range(const CoaxialLaw& law, CoaxialLaw::Workspace& work
   return outcome;
 }
 
-/// All points in shares of equal size; where a thread cannot be had, this one does its share.
-grainlaw_outcome update_all(grainlaw_context& context, const Points& points, std::size_t count,
-                            std::size_t shares) {
+/// All points, in shares of equal size.
+grainlaw_outcome update_all(grainlaw_context& context, const Points& points, std::size_t count, int threads) {
+  const auto shares = static_cast<std::size_t>(threads);
+  if (context.workspaces.size() < shares) context.workspaces.resize(shares);
   std::vector<grainlaw_outcome> outcomes(shares);
-  std::vector<CoaxialLaw::Workspace> workspaces(shares);
-  const auto work = [&](std::size_t share) noexcept {
-    CoaxialLaw::Workspace& own = share == 0 ? context.workspace : workspaces[share];
-    outcomes[share] =
-        update_range(*context.law, own, points, count * share / shares, count * (share + 1) / shares);
+  const auto work = [&](int thread) noexcept {
+    const auto share = static_cast<std::size_t>(thread);
+    outcomes[share] = update_range(*context.law, context.workspaces[share], points, count * share / shares,
+                                   count * (share + 1) / shares);
   };
-  {
-    std::vector<std::jthread> others;
-    others.reserve(shares);
-    for (std::size_t share = 1; share < shares; ++share) try {
-        others.emplace_back(work, share);
-      } catch (const std::system_error&) {
-        work(share);
-      }
+  if (threads == 1) {
     work(0);
+  } else {
+    if (!context.team || context.team->threads() != threads) {
+      context.team.reset();
+      context.team = std::make_unique<grainlaw::ThreadPool>(threads);
+    }
+    context.team->run(work);
   }
   grainlaw_outcome all{0, 0, 0};
   for (const grainlaw_outcome& outcome : outcomes) {
@@ -182,8 +180,8 @@ int grainlaw_update_many(grainlaw_context* context, size_t count, double* states
   return guarded(context, [&]() -> int {
     const Points points{states, stride, strain_increments, stresses, tangents, statuses};
     check_points(points, threads);
-    const std::size_t shares = std::clamp<std::size_t>(count, 1, static_cast<std::size_t>(threads));
-    const grainlaw_outcome all = update_all(*context, points, count, shares);
+    const auto team = static_cast<int>(std::clamp<std::size_t>(count, 1, static_cast<std::size_t>(threads)));
+    const grainlaw_outcome all = update_all(*context, points, count, team);
     if (outcome) *outcome = all;
     if (all.failed == 0) return all.unjammed > 0 ? GRAINLAW_UNJAMMED : GRAINLAW_OK;
     return explain(*context, points, all.first);
