@@ -260,9 +260,12 @@ std::optional<ModuliLaws> moduli_laws(const ModuliFit& fit, const Reference& ref
 
 std::optional<model::VolumetricLaws> volumetric_laws(const VolumetricFit& fit, const Reference& reference) {
   if (!fit.compression.ran || !fit.compression.determined()) return std::nullopt;
-  if (!fit.decompression.ran || !fit.decompression.determined()) return std::nullopt;
-  return model::VolumetricLaws{from_estimate(fit.compression["compression"], {}, reference, ""),
-                               from_estimate(fit.decompression["decompression"], {}, reference, "")};
+  const FitEstimate& down = fit.decompression["decompression"];
+  const bool known = fit.decompression.ran && down.determined;
+  return model::VolumetricLaws{
+      from_estimate(fit.compression["compression"], {}, reference, ""),
+      known ? from_estimate(down, {}, reference, "")
+            : assumed(0, "decompression", "neglected, as in the thesis: " + down.reason, {})};
 }
 
 std::optional<MemoryLaws> memory_laws(const MemoryFit& fit, const Reference& reference) {

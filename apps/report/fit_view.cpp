@@ -59,12 +59,12 @@ FitView read_fit(const Json& json) {
   fit.y_label = text_in(value_in(json, "y"), "label");
   const auto parts = parts_of(fit.name);
   const bool over_nu = fit.x_name == "nu" && parts.size() > 1;
-  if (over_nu && (parts[0] == "isotropic" || parts[0] == "shear")) {
+  if (over_nu && (parts[0] == "isotropic" || parts[0] == "shear" || parts[0] == "shear_axial")) {
     fit.group = parts[0];
     fit.row = parts[1];
     fit.family = parts.size() > 2 ? parts[2] : fit.y_name;
   }
-  if ((parts[0] == "moduli" || parts[0] == "memory") && parts.size() > 1) {
+  if ((parts[0] == "moduli" || parts[0] == "memory" || parts[0] == "volumetric") && parts.size() > 1) {
     fit.group = parts[0];
     fit.family = parts[1];
   }

@@ -147,11 +147,11 @@ Markup quality(const std::vector<FitView>& fits) {
   std::vector<const FitView*> isotropic, runs, saturation, moduli, other;
   for (const FitView& fit : fits) {
     if (fit.idle()) continue;
-    auto& family = fit.group == "isotropic" ? isotropic
-                   : fit.group == "shear"   ? saturation
-                   : fit.group == "moduli"  ? moduli
-                   : fit.of_one_run()       ? runs
-                                            : other;
+    auto& family = fit.group == "isotropic"         ? isotropic
+                   : fit.group.starts_with("shear") ? saturation
+                   : fit.group == "moduli"          ? moduli
+                   : fit.of_one_run()               ? runs
+                                                    : other;
     family.push_back(&fit);
   }
   return "<h3>Residual, condition, exit</h3>\n"_html + quality_of("Isotropic laws", isotropic) +

@@ -70,12 +70,12 @@ void read_free_C0(Entries& entries, const FitView& fit) {
 
 Entries collect(const Inputs& inputs, const std::vector<FitView>& fits) {
   Entries entries;
-  for (const char* group : {"isotropic", "shear"}) {
+  for (const char* group : {"isotropic", "shear", "shear_axial"}) {
     const Json& rows = value_in(inputs.parameters, group);
     if (!rows.is_object()) continue;
     for (const auto& [row, json] : rows.items()) read_row(entries, group, row, json);
   }
-  for (const char* group : {"moduli", "memory"})
+  for (const char* group : {"moduli", "memory", "volumetric"})
     read_row(entries, group, "", value_in(inputs.parameters, group));
   // The first fit of a law and mode counts; one of tests kept back for prediction comes later and only stands
   // in for none.
@@ -189,13 +189,28 @@ Markup isotropic_table(const Inputs& inputs, const Entries& entries) {
                 {"nu_c", "p0", "gamma_p", "nu_c_contacts", "C0", "C0_free", "C1", "alpha", "phi_c", "phi_v"});
 }
 
-Markup shear_table(const Entries& entries) {
-  const auto rows = rows_of(entries, "shear", {"s_max", "beta_s", "F_max", "beta_F"});
+Markup shear_table(const Entries& entries, const std::string& group, const Markup& title) {
+  const auto rows = rows_of(entries, group, {"s_max", "beta_s", "F_max", "beta_F"});
   if (rows.empty()) return {};
   std::vector<Markup> heads;
   for (const std::string& row : rows) heads.push_back(symbol(row));
-  return "<h3>Shear laws (Eq. 2.20), beside Table 2.2</h3>\n"_html +
-         matrix(entries, "shear", rows, heads, {"Q_max", "Q_v", "alpha", "nu_c"});
+  return "<h3>"_html + title + "</h3>\n"_html +
+         matrix(entries, group, rows, heads, {"Q_max", "Q_v", "alpha", "nu_c"});
+}
+
+Markup shear_tables(const Entries& entries) {
+  return shear_table(entries, "shear", "Shear laws (Eq. 2.20), beside Table 2.2"_html) +
+         shear_table(entries, "shear_axial", "The same of axisymmetric strain (D3), past the thesis"_html);
+}
+
+/// Nothing where no test changed the volume of a sheared packing alone.
+Markup volumetric_table(const Entries& entries) {
+  const bool any = std::any_of(entries.begin(), entries.end(), [](const auto& one) {
+    return one.first[0] == "volumetric" && one.second.in_set;
+  });
+  if (!any) return {};
+  return "<h3>Fabric under change of volume alone, past the thesis</h3>\n"_html +
+         matrix(entries, "volumetric", {""}, {"Value"_html}, {"compression", "decompression"});
 }
 
 /// Nothing where none of the moduli is fitted: they stand among the numbers that are not.
@@ -300,8 +315,8 @@ Markup sources_table(const Entries& entries) {
 Markup parameter_tables(const Inputs& inputs, const std::vector<FitView>& fits) {
   const Entries entries = collect(inputs, fits);
   if (entries.empty()) return absent("No parameters: neither parameters.json nor fits.json holds any.");
-  Markup tables =
-      isotropic_table(inputs, entries) + shear_table(entries) + moduli_table(entries) + memory_table(entries);
+  Markup tables = isotropic_table(inputs, entries) + shear_tables(entries) + moduli_table(entries) +
+                  volumetric_table(entries) + memory_table(entries);
   tables += element(
       "p",
       "Each cell: our value ± one standard error; under it the thesis's value and our difference from it in "

@@ -169,7 +169,9 @@ Markup other_figures(const std::vector<FitView>& fits) {
   Markup figures;
   std::size_t n = 0;
   for (const FitView& fit : fits) {
-    const bool shown = fit.of_one_run() || !fit.group.empty();
+    const bool past_thesis =
+        fit.group == "shear_axial" || fit.group == "volumetric";  // without a figure of their own
+    const bool shown = fit.of_one_run() || (!fit.group.empty() && !past_thesis);
     if (shown || fit.data.empty()) continue;
     Figure figure;
     figure.name = "fit-" + std::to_string(++n);

@@ -135,6 +135,13 @@ const std::vector<Symbol> memory{
      "Strain in which shear against its fabric gives phi_J back (form memory)."},
 };
 
+const std::vector<Symbol> volumetric{
+    {"volumetric.compression", "<var>k</var><sub>+</sub>", "{/:Italic k}_+", "–",
+     "Loss of F_dev by compression alone: −d ln F_dev/d ln nu (past the thesis)."},
+    {"volumetric.decompression", "<var>k</var><sub>−</sub>", "{/:Italic k}_−", "–",
+     "The same where the volume grows."},
+};
+
 const std::vector<Symbol> material{
     {"material.w", "<var>w</var>", "{/:Italic w}", "–",
      "Largest over smallest grain radius of the uniform size distribution."},
@@ -157,12 +164,14 @@ const std::vector<SymbolGroup>& symbol_groups() {
       {"Shear laws (Eqs. 2.17, 2.18, 2.20)", shear},
       {"Small-strain moduli (Eqs. 4.11 – 4.15)", moduli},
       {"Memory of the jamming density (Eqs. 5.1 – 5.13)", memory},
+      {"Fabric under change of volume", volumetric},
       {"Material", material},
   };
   return groups;
 }
 
 const Symbol* find_symbol(std::string_view name, std::string_view group) {
+  if (group == "shear_axial") group = "shear";  // the same letters, of another mode
   const std::string full = group.empty() ? std::string(name) : std::string(group) + "." + std::string(name);
   const Symbol* plain = nullptr;
   for (const SymbolGroup& part : symbol_groups()) {

@@ -78,8 +78,18 @@ TEST_F(FitVolumetric, GivesTheNumbersBack) {
   EXPECT_THAT(names, Contains("volumetric.decompression"));
 }
 
-TEST_F(FitVolumetric, OneDirectionAloneIsNoGroup) {
+TEST_F(FitVolumetric, WithoutDecompressionThatIsNeglected) {
   std::filesystem::remove_all(record("down-s1"));
+  const auto volumetric = fitted().parameters.volumetric;
+  ASSERT_TRUE(volumetric);
+  EXPECT_NEAR(volumetric->compression.value, k_up, 1e-6);
+  EXPECT_EQ(volumetric->decompression.value, 0);
+  EXPECT_EQ(volumetric->decompression.source, "assumed");
+  EXPECT_EQ(volumetric->decompression.note, "neglected, as in the thesis: no data");
+}
+
+TEST_F(FitVolumetric, WithoutCompressionThereIsNoGroup) {
+  std::filesystem::remove_all(record("up-s1"));
   EXPECT_FALSE(fitted().parameters.volumetric);
 }
 
