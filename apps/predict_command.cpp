@@ -159,7 +159,9 @@ int run(const Arguments& arguments) {
   else
     record.write_csv(arguments.output);
   echo_start(terminal, prediction);
-  return all_well;
+  if (prediction.status.code != model::Status::Code::limit) return all_well;
+  terminal.warn(arguments.path + ": " + prediction.status.message);
+  return failed;
 }
 
 }  // namespace

@@ -60,6 +60,7 @@ WrittenOrigin read_origin(Reader reader) {
 /// The path of a test, which must leave its start to the state the test starts from.
 Path read_path(Reader reader) {
   Path path = Path::read(reader);
+  path.need_grains_can_follow();
   const Json start = path.to_json().at("start");
   if (!start.empty())
     throw Error(

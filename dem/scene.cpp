@@ -258,6 +258,7 @@ Scene Scene::read(Reader reader, const std::filesystem::path& scene_dir) {
   scene.path = Path::read(reader.object("path"));
   scene.measure = Measure::read(reader.object_or_empty("measure"));
   reader.finish();
+  scene.path.need_grains_can_follow();
   refuse_prescribed(scene.path, reader);
   agree_on_start(scene, reader);
   check_segments_exist(scene, "snapshots", scene.measure.snapshots);

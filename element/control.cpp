@@ -2,11 +2,12 @@
 
 #include <algorithm>
 
+#include "grainlaw/element/path_limits.hpp"
+
 namespace grainlaw {
 
 namespace {
 
-constexpr double largest_stress = 1000;  // over k*: far beyond any packing, so that nothing overflows
 constexpr double fastest = 1e6, longest = 1e15;
 constexpr double least_wait = 2000;    // us, 24 background relaxation times of the thesis's material
 constexpr double waited_strain = 0.5;  // at the servo's rate: from a gas to a dense packing and beyond

@@ -152,7 +152,7 @@ Leg Path::leg(std::size_t i, const Waypoint& from, bool certain) const {
   leg.residual = segment.residual;
   if (segment.mode == Mode::biaxial || segment.mode == Mode::triaxial) leg.to_eps_dev = segment.to_eps_dev;
   const double size = largest(leg.strain);
-  const bool waits = !leg.drives() && leg.control.by_stress();
+  const bool waits = !leg.drives() && segment.by_stress();
   if (certain && segment.mode != Mode::relax && !waits && !(size > 1e-14))
     throw Error(file, segment.key, "has nothing to do: its target is the state already reached");
   leg.duration = segment.duration ? *segment.duration : waits ? leg.control.servo.wait : size / *segment.rate;
@@ -178,11 +178,15 @@ Leg Path::leg(std::size_t i, const Waypoint& from, bool certain) const {
 }
 
 std::vector<Leg> Path::legs(double nu) const {
-  for (const Segment& segment : segments)
+  for (const Segment& segment : segments) {
     if (segment.control.by_stress())
       throw Error(file, segment.key,
                   "is under stress control (mode " + name_of(segment.mode) +
                       "): its strain is known only when the grains have run");
+    if (segment.law_only())
+      throw Error(file, segment.key,
+                  "has two targets or a stop: its strain is known only when it was walked");
+  }
   return nominal_legs(nu);
 }
 
@@ -191,12 +195,29 @@ std::vector<Leg> Path::nominal_legs(double nu, bool certain) const {
   legs.reserve(segments.size());
   Waypoint at(nu);
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    certain = certain && !segments[i].control.by_stress();
+    certain = certain && !segments[i].by_stress() && !(i > 0 && segments[i - 1].stop);
     Leg leg = this->leg(i, at, certain);
     at.move(leg.strain, leg.axis);
     legs.push_back(std::move(leg));
   }
   return legs;
+}
+
+bool Path::strain_is_known() const {
+  return std::none_of(segments.begin(), segments.end(),
+                      [](const Segment& segment) { return segment.by_stress() || segment.stop; });
+}
+
+void Path::need_grains_can_follow() const {
+  for (const Segment& segment : segments) {
+    if (!segment.law_controls.empty())
+      throw Error(file, segment.key + ".controls",
+                  "has two targets, which only the law can follow (predict); for grains give one, or a mode "
+                  "under stress control");
+    if (segment.stop)
+      throw Error(file, segment.key + ".stop",
+                  "ends a segment of the law (predict); grains go on to the segment's end");
+  }
 }
 
 bool Path::by_stress() const {

@@ -9,6 +9,7 @@
 
 #include "grainlaw/element/control.hpp"
 #include "grainlaw/element/json.hpp"
+#include "grainlaw/element/law_control.hpp"
 #include "grainlaw/element/tensor.hpp"
 
 namespace grainlaw {
@@ -65,6 +66,13 @@ struct Segment {
   std::optional<double> residual;  ///< quasistatic, or a relax that minimises: see Leg
   /// Whether no axis is driven at a strain rate: the box waits for rest or for stress targets.
   bool only_waits() const;
+  /// Two quantities that the law is to follow; the mode then only says the axis of shear. Empty, or two.
+  std::vector<LawControl> law_controls;
+  std::optional<Stop> stop;
+  /// Whether only the law can follow it.
+  bool law_only() const { return !law_controls.empty() || stop; }
+  /// Whether its strain is known only when it has been followed.
+  bool by_stress() const { return control.by_stress() || !law_controls.empty(); }
   std::string key;  ///< where it stands in its file ("path.segments[2]")
 };
 
@@ -135,6 +143,10 @@ struct Path {
   std::vector<Leg> nominal_legs(double nu, bool certain = true) const;
   /// Whether any segment is under stress control.
   bool by_stress() const;
+  /// Whether the strain of every segment is known before anything follows it.
+  bool strain_is_known() const;
+  /// Throws Error (file, key) for a segment that only the law can follow.
+  void need_grains_can_follow() const;
   std::string file;  ///< for error messages
 };
 

@@ -16,9 +16,7 @@ constexpr double fastest = 1e6;                // 1/us
 constexpr double default_rate = 2.839e-5;      // 28.39 /s, the thesis's D2 (section 4.3)
 constexpr double default_rate_iso = 5.0e-6;    // 5 /s, near the thesis's slow isotropic cycle (Fig. 2.2)
 constexpr double longest_relaxation = 2000.0;  // us, 24 background relaxation times
-constexpr double largest_stress =
-    1000;  // over k*, and of fabric: far beyond any law, so that nothing overflows
-const Range any_strain = between(-100, 100), any_rate = above_up_to(0, fastest),
+const Range any_strain = between(-largest_strain, largest_strain), any_rate = above_up_to(0, fastest),
             any_duration = above_up_to(0, longest_duration);
 constexpr double default_residual = 1e-6;  // of a packing in balance, over the mean contact force
 constexpr double least_increment = 1e-9, largest_increment = 0.01;
@@ -48,21 +46,36 @@ const std::vector<std::string>& controls_of(Mode mode) {
   }
 }
 
-/// Reads `controls`: exactly one target, and one that the mode moves.
+/// Whether a segment of this mode may prescribe two quantities: the mode then only says the axis of shear.
+bool takes_two(Mode mode) {
+  return mode == Mode::iso || mode == Mode::uni || mode == Mode::d2 || mode == Mode::d3;
+}
+
+/// Reads `controls`: exactly one target, and one that the mode moves; or two quantities, for the law.
 void read_controls(Reader reader, Segment& segment) {
+  const auto keys = reader.keys();
+  const auto by_stress = [](const std::string& key) {
+    return key == "P" || key == "sigma_dev" || key == "s_dev";
+  };
+  const bool two = keys.size() > 1 || std::any_of(keys.begin(), keys.end(), by_stress);
+  const bool same = keys.size() == 2 && reader.has("nu") && reader.has("eps_vol");
+  if (takes_two(segment.mode) && two && !same) {
+    segment.law_controls = read_law_controls(reader);
+    return;
+  }
   segment.to_nu = reader.maybe_number("nu", inside(0, 1));
   segment.to_eps_vol = reader.maybe_number("eps_vol", any_strain);
   segment.to_eps_dev = reader.maybe_number("eps_dev", any_strain);
   reader.finish();
   const std::string mode = name_of(segment.mode);
   const auto& moved = controls_of(segment.mode);
-  for (const auto& key : reader.keys())
+  for (const auto& key : keys)
     if (std::find(moved.begin(), moved.end(), key) == moved.end())
       reader.fail(key, mode + (key == "eps_dev" ? " does not shear, so eps_dev cannot be a target"
                                                 : " keeps the volume, so " + key + " cannot be a target"));
-  if (reader.keys().empty()) reader.fail("", "must give one target out of nu, eps_vol, eps_dev, got {}");
-  if (reader.keys().size() > 1)
-    reader.fail("", "redundant: in " + mode + " each of " + reader.keys()[0] + " and " + reader.keys()[1] +
+  if (keys.empty()) reader.fail("", "must give one target out of nu, eps_vol, eps_dev, got {}");
+  if (keys.size() > 1)
+    reader.fail("", "redundant: in " + mode + " each of " + keys[0] + " and " + keys[1] +
                         " fixes the other; give one");
 }
 
@@ -230,6 +243,8 @@ Segment read_segment(Reader& reader, std::int64_t& repeat) {
     reader.fail("repeat", "needs amount: a target is already reached the second time, got controls");
   read_pace(reader, segment);
   check_drive(reader, segment);
+  reader.optional({"stop"});
+  if (reader.has("stop")) segment.stop = read_stop(reader.object("stop"));
   reader.finish();
   return segment;
 }
@@ -294,6 +309,7 @@ void put_targets(Json& json, const Segment& segment) {
 
 Json segment_json(const Segment& segment) {
   Json json{{"mode", name_of(segment.mode)}};
+  if (segment.stop) json["stop"] = grainlaw::to_json(*segment.stop);
   if (segment.mode == Mode::relax) {
     if (segment.residual) return {{"mode", "relax"}, {"residual", *segment.residual}};
     json["tolerance"] = segment.tolerance;
@@ -303,6 +319,7 @@ Json segment_json(const Segment& segment) {
   if (segment.to_nu) json["controls"] = {{"nu", *segment.to_nu}};
   if (segment.to_eps_vol) json["controls"] = {{"eps_vol", *segment.to_eps_vol}};
   if (segment.to_eps_dev) json["controls"] = {{"eps_dev", *segment.to_eps_dev}};
+  if (!segment.law_controls.empty()) json["controls"] = grainlaw::to_json(segment.law_controls);
   if (segment.amount) json["amount"] = *segment.amount;
   if (segment.mode == Mode::components) json["strain"] = strain_json(segment.strain);
   put_targets(json, segment);

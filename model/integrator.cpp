@@ -81,6 +81,7 @@ struct Integrator::Handles {
   int add_sensitivities(std::vector<double> scales);
   int restart_sensitivities(const double* values);
   int get_sensitivities(double* values);
+  std::size_t which_event();
 
   int size;
   sundials::Context context;  // first in, last out: everything below belongs to it
@@ -124,7 +125,9 @@ int Integrator::Handles::jacobian(realtype t, N_Vector y, N_Vector, SUNMatrix J,
 int Integrator::Handles::event(realtype t, N_Vector y, realtype* g, void* user) {
   auto& h = *static_cast<Handles*>(user);
   return h.guarded([&] {
-    g[0] = h.system->event(t, data(y));
+    const auto& others = h.system->others;
+    for (std::size_t i = 0; i < others.size(); ++i) g[i] = others[i](t, data(y));
+    if (h.system->event) g[others.size()] = h.system->event(t, data(y));
     return true;
   });
 }
@@ -172,6 +175,14 @@ int Integrator::Handles::get_sensitivities(double* values) {
   gather(s.data(), s_values, size);
   std::copy(s_values.begin(), s_values.end(), values);
   return 0;
+}
+
+/// Of several at the same place, the first.
+std::size_t Integrator::Handles::which_event() {
+  std::vector<int> found(system->others.size() + (system->event ? 1 : 0));
+  if (CVodeGetRootInfo(memory.get(), found.data()) != 0) return 0;
+  const auto first = std::find_if(found.begin(), found.end(), [](int crossed) { return crossed != 0; });
+  return static_cast<std::size_t>(first - found.begin());
 }
 
 void Integrator::Handles::complain(int, const char*, const char*, char* message, void* user) {
@@ -230,7 +241,8 @@ Status Integrator::start(const System& system, double t, double end, const doubl
   void* m = h.memory.get();
   int failed = CVodeReInit(m, t, h.y.get());
   if (failed == 0) failed = h.restart_sensitivities(s);
-  if (failed == 0) failed = CVodeRootInit(m, system.event ? 1 : 0, system.event ? Handles::event : nullptr);
+  const int events = static_cast<int>(system.others.size()) + (system.event ? 1 : 0);
+  if (failed == 0) failed = CVodeRootInit(m, events, events > 0 ? Handles::event : nullptr);
   if (failed == 0) failed = CVodeSetStopTime(m, end);
   if (failed != 0) return {Status::Code::failed, "the integrator cannot start: " + h.complaint};
   return {};
@@ -252,7 +264,7 @@ Integrator::Arrival Integrator::advance(double to, double* y, double* s) {
   }
   if (code < 0) return {{Status::Code::failed, "CVODE: " + h.complaint}, h.t, false};
   std::copy_n(data(h.y.get()), h.size, y);
-  return {{}, h.t, code == CV_ROOT_RETURN};
+  return {{}, h.t, code == CV_ROOT_RETURN, code == CV_ROOT_RETURN ? h.which_event() : 0};
 }
 
 long Integrator::steps() const {

@@ -3,6 +3,7 @@
 // function crosses zero. One object is kept and re-initialised for every stretch.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -33,7 +34,9 @@ Method method_of(const std::string& name);
 struct System {
   std::function<bool(double t, const double* y, double* dydt)> rate;
   std::function<bool(double t, const double* y, double* J)> jacobian;  ///< J[i + size j] = d rate_i/d y_j
-  std::function<double(double t, const double* y)> event;  ///< stop where it crosses zero; may be empty
+  using Event = std::function<double(double t, const double* y)>;
+  Event event;                ///< stop where it crosses zero; may be empty
+  std::vector<Event> others;  ///< stop where one of these does, too
   /// ds/dt of the sensitivities s[i + size k] = dy_i/dp_k, J s_k + d rate/dp_k; only where they are asked
   /// for.
   std::function<bool(double t, const double* y, const double* s, double* dsdt)> sensitivity_rate;
@@ -58,6 +61,8 @@ class Integrator {
     Status status;       ///< ok, or failed with CVODE's reason
     double t = 0;        ///< where y belongs: `to`, or the event
     bool event = false;  ///< an event came first
+    /// Which: the place in `others`, or their number for `event` itself.
+    std::size_t which = 0;
   };
   /// Goes on to t = `to` <= end; y and s receive the solution there, or are left alone on failure.
   Arrival advance(double to, double* y, double* s = nullptr);

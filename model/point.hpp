@@ -37,6 +37,10 @@ class MaterialPoint {
   void relax() { state_.direction.q = 0; }
 
   const std::vector<Event>& events() const { return events_; }
+  void note(const Event& event) { events_.push_back(event); }
+
+  /// Goes on from another state, as one that was kept, or that another way of walking came to.
+  void set_state(const State& state) { state_ = state; }
 
  private:
   Law law_;

@@ -5,6 +5,8 @@
 #include <iterator>
 
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/model/columns.hpp"
+#include "grainlaw/model/controlled_path.hpp"
 #include "grainlaw/model/point.hpp"
 #include "grainlaw/model/pressure_drift.hpp"
 #include "grainlaw/model/sensitivities.hpp"
@@ -58,30 +60,6 @@ void check_samples(const std::vector<Sample>& samples, std::size_t legs) {
   }
 }
 
-/// A row of prediction_columns().
-std::vector<double> row_of(const Law& law, const State& state, std::size_t leg) {
-  const Contacts contacts = contacts_of(law, state);
-  const auto value = [&](std::string_view column) {
-    if (column == "segment") return static_cast<double>(leg);
-    if (column == "eps_vol") return state.eps_vol;
-    if (column == "eps_dev") return state.eps_dev;
-    if (column == "nu") return state.nu;
-    if (column == "P") return state.P;
-    if (column == "sigma_dev") return state.sigma_dev;
-    if (column == "s_dev") return state.s_dev();
-    if (column == "F_v") return contacts.F_v;
-    if (column == "F_dev") return state.jammed ? state.F_dev : 0;  // without contacts there is no fabric
-    if (column == "C") return contacts.C;
-    if (column == "C_star") return contacts.C_star;
-    if (column == "f_NR") return contacts.f_NR;
-    if (column == "phi_J") return state.phi_J;
-    throw Error("the law has no column " + std::string(column));
-  };
-  std::vector<double> row;
-  for (const auto& column : prediction_columns()) row.push_back(value(column));
-  return row;
-}
-
 /// The slopes of sensitive_columns(), name by name.
 void append_slopes(std::vector<double>& row, const BasicState<Slopes>& state, std::size_t names) {
   for (std::size_t k = 0; k < names; ++k)
@@ -99,6 +77,12 @@ void tell_events(const std::vector<Event>& events, std::vector<std::string>& war
                        where(events[i].nu, events[i].eps_dev));
   if (events.size() > most_events)
     warnings.push_back("unjams and jams " + std::to_string(events.size() - most_events) + " times more");
+}
+
+/// Of a path that was walked so far.
+Status end_status(const Status& status, const State& end) {
+  if (status.code != Status::Code::ok || end.jammed) return status;
+  return {Status::Code::unjammed, "carries no stress at the end: unjammed " + where(end.nu, end.eps_dev)};
 }
 
 struct Walked {
@@ -126,10 +110,7 @@ Walked walk_legs(Point& point, const Path& path, const std::vector<Leg>& legs,
     }
     walked.P_at_ends.push_back(value(point.state().P));
   }
-  const State end = values_of(point.state());
-  if (!end.jammed)
-    walked.status = {Status::Code::unjammed,
-                     "carries no stress at the end: unjammed " + where(end.nu, end.eps_dev)};
+  walked.status = end_status({}, values_of(point.state()));
   return walked;
 }
 
@@ -140,10 +121,14 @@ void conclude(Prediction& prediction, const std::vector<Leg>& legs, const Walked
   tell_drift(pressure_drift(legs, walked.P_at_ends), prediction.warnings);
 }
 
-std::vector<Sample> even_samples_of(const ParameterSet& parameters, const Path& path,
-                                    const PredictOptions& options) {
+void check_rows(const PredictOptions& options) {
   if (options.rows_per_leg < 1)
     throw Error("", "rows_per_leg", "must be >= 1, got " + std::to_string(options.rows_per_leg));
+}
+
+std::vector<Sample> even_samples_of(const ParameterSet& parameters, const Path& path,
+                                    const PredictOptions& options) {
+  check_rows(options);
   const StartState start = start_of(parameters, path, {options.form, options.terms});
   return even_samples(path.legs(start.state.nu), options.rows_per_leg);
 }
@@ -177,7 +162,31 @@ Prediction predict(const ParameterSet& parameters, const Path& path, const std::
   return prediction;
 }
 
+namespace {
+
+/// Where the strain of some segment is found only by walking it.
+Prediction predict_controlled(const ParameterSet& parameters, const Path& path,
+                              const PredictOptions& options) {
+  check_rows(options);
+  const StartState start = start_of(parameters, path, {options.form, options.terms});
+  Prediction prediction{Record(prediction_columns()), start.echo, start.warnings, {}};
+  const Tolerance tolerance{options.rtol, options.atol};
+  MaterialPoint point(start.law, start.state, tolerance, options.method);
+  const auto visit = [&](std::size_t segment, const State& state) {
+    prediction.record.append(row_of(point.law(), state, segment));
+  };
+  visit(0, point.state());
+  const WalkedPath walked = walk_controlled(point, tolerance, path, options.rows_per_leg, visit);
+  for (const auto& warning : walked.warnings) prediction.warnings.push_back(warning);
+  conclude(prediction, walked.legs, {end_status(walked.status, point.state()), walked.P_at_ends},
+           point.events());
+  return prediction;
+}
+
+}  // namespace
+
 Prediction predict(const ParameterSet& parameters, const Path& path, const PredictOptions& options) {
+  if (!path.strain_is_known()) return predict_controlled(parameters, path, options);
   return predict(parameters, path, even_samples_of(parameters, path, options), options);
 }
 

@@ -40,8 +40,9 @@ struct Prediction {
 };
 
 /// Walks `path` from its start: one row for the start (segment 0), then options.rows_per_leg rows per leg.
+/// Segments may prescribe stresses or end on a condition; one that ends early has its end as its last row.
 /// Throws Error (file, key) for a start or path the law cannot take, or a group the parameter set lacks; a
-/// failure of the integration is not thrown but returned as the status.
+/// target that cannot be reached and a failure of the integration are not thrown but returned as the status.
 Prediction predict(const ParameterSet& parameters, const Path& path, const PredictOptions& options = {});
 
 /// The same with one row per sample; samples are in the order of the path.

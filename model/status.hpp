@@ -8,10 +8,11 @@ namespace grainlaw::model {
 
 struct Status {
   enum class Code {
-    ok,          ///< the end was reached
-    unjammed,    ///< the end was reached, and the point carries no stress there: P = 0
-    failed,      ///< the integration stopped; the state is that of the last row
-    not_coaxial  ///< the strain has another axis than the point, which has not moved
+    ok,           ///< the end was reached
+    unjammed,     ///< the end was reached, and the point carries no stress there: P = 0
+    failed,       ///< the integration stopped; the state is that of the last row
+    not_coaxial,  ///< the strain has another axis than the point, which has not moved
+    limit         ///< a prescribed stress or strain cannot be reached; the state is where it ended on the way
   };
   Code code = Code::ok;
   std::string message;
@@ -29,6 +30,8 @@ inline std::string name_of(Status::Code code) {
       return "failed";
     case Status::Code::not_coaxial:
       return "not_coaxial";
+    case Status::Code::limit:
+      return "limit";
   }
   return "";
 }

@@ -1,0 +1,85 @@
+// How stress and the variables of each form change with d ln nu and with d eps_dev in a given direction of
+// shear: every form's rates are linear in the two.
+#pragma once
+
+#include <array>
+#include <type_traits>
+
+#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/prescribed.hpp"
+
+namespace grainlaw::model {
+
+/// StressRates, and the same of the form's N variables.
+template <class T, std::size_t N>
+struct FormRates {
+  StressRates<T> stress;
+  std::array<T, N> v, e;  ///< of the variables
+};
+
+template <class T>
+BasicDirection<T> with_scalar(const Direction& d) {
+  return {d.q, d.S_I, d.S_F_I, d.s_0, d.F_0, d.eps_dev_0};
+}
+
+/// Of a coupled form: its variables are P* and sigma*_dev themselves.
+template <class T, std::size_t N>
+StressRates<T> stress_of_variables(const T* y, const FormRates<T, N>& rates) {
+  const T s = y[0] > 0 ? y[1] / y[0] : T(0.0);
+  return {y[0],
+          y[1],
+          rates.v[0],
+          rates.e[0],
+          rates.v[1],
+          rates.e[1],
+          (rates.v[1] - s * rates.v[0]) / y[0],
+          (rates.e[1] - s * rates.e[0]) / y[0]};
+}
+
+/// Where P* is that of Eq. 2.14 and s_dev changes by s_v, s_e.
+template <class T>
+StressRates<T> stress_of_ratio(const Laws& laws, const T& nu, const T& s, const T& s_v, const T& s_e) {
+  const T P = pressure(laws.pressure, nu), P_v = pressure_slope(laws.pressure, nu);
+  return {P, s * P, P_v, T(0.0), s * P_v + P * s_v, P * s_e, s_v, s_e};
+}
+
+/// Eq. 2.17 at the current nu: s = q s_max - (q s_max - s_0) exp(-beta_s E), E = q (eps_dev - eps_dev_0).
+template <class T>
+StressRates<T> stress_of_closed(const Laws& laws, const State& begin, const Direction& d, const T& nu,
+                                const T& eps_dev) {
+  using std::exp, std::expm1;
+  if (d.q == 0) return stress_of_ratio(laws, nu, T(begin.s_dev()), T(0.0), T(0.0));
+  const T E = d.q * (eps_dev - d.eps_dev_0);
+  const T limit = d.q * saturation(laws.s_max, nu), beta = saturation(laws.beta_s, nu);
+  const T s = approach(limit, d.s_0, beta, E);
+  const T s_v = nu * (-(d.q * saturation_slope(laws.s_max, nu)) * expm1(-beta * E) +
+                      (limit - d.s_0) * E * saturation_slope(laws.beta_s, nu) * exp(-beta * E));
+  return stress_of_ratio(laws, nu, s, s_v, T(d.q * approach_rate(limit, s, beta)));
+}
+
+/// At volume fraction nu, eps_dev from the path's start and variables y of the form; `d` is the direction of
+/// shear, with q = 0 for none (then nothing changes by eps_dev). `begin` is where the direction is followed
+/// from. False where the rates are not defined.
+template <class Form, class T>
+bool form_rates(const Form& form, const State& begin, const Direction& d, const T& nu, const T& eps_dev,
+                const T* y, FormRates<T, Form::size>& rates) {
+  constexpr std::size_t n = Form::size;
+  if constexpr (n == 0) {
+    rates.stress = stress_of_closed(form.laws, begin, d, nu, eps_dev);
+  } else {
+    const auto direction = with_scalar<T>(d);
+    if (!form.rate(BasicStretch<T>{nu, 1.0, 0.0}, direction, T(0.0), y, rates.v.data())) return false;
+    rates.e.fill(T(0.0));
+    if (d.q != 0) {
+      if (!form.rate(BasicStretch<T>{nu, 0.0, d.q}, direction, T(0.0), y, rates.e.data())) return false;
+      for (T& rate : rates.e) rate = d.q * rate;
+    }
+    if constexpr (std::is_base_of_v<Coupled, Form>)
+      rates.stress = stress_of_variables(y, rates);
+    else
+      rates.stress = stress_of_ratio(form.laws, nu, y[0], rates.v[0], rates.e[0]);
+  }
+  return true;
+}
+
+}  // namespace grainlaw::model
