@@ -131,6 +131,7 @@ class ControlledWalk {
   Status walk_unjammed() {
     if (by_stress()) return at_limit("the point is unjammed and carries no stress; compress it first");
     const StrainCourse course(controls_, begin_);
+    if (course.at(1).nu >= 1) return at_limit("the volume fraction must stay below 1");
     const auto with_strain = [&](double t) {
       const State strained = course.at(t);
       State state = state_;
@@ -172,7 +173,8 @@ class ControlledWalk {
     Cause cause{};
     if (Status status = integrate(steered, cause); status.failed()) return status;
     switch (cause) {
-      case Cause::limit:
+      case Cause::limit:  // also where Eq. 2.14 ends
+        if (carries_nothing()) return lose_contact();
         return at_limit("no strain follows the path further");
       case Cause::no_pressure:
       case Cause::no_contacts:
@@ -218,6 +220,8 @@ class ControlledWalk {
     constexpr std::size_t x = Form::size;
     add(Cause::no_contacts, [room = std::log(steered.begin().nu / form_.unjamming_density())](
                                 double, const double* z) { return room + z[x]; });
+    add(Cause::limit,
+        [room = -std::log(steered.begin().nu)](double, const double* z) { return room - z[x]; });
     if constexpr (std::is_base_of_v<Coupled, Form>)
       add(Cause::no_pressure, [](double, const double* z) { return z[0] - smallest_pressure; });
     add(Cause::limit, [&steered](double t, const double* z) { return steered.distance_to_limit(t, z); });
