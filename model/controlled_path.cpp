@@ -11,16 +11,24 @@ namespace grainlaw::model {
 
 namespace {
 
-void check_axes(const Path& path, const std::vector<Leg>& legs) {
+/// A mix of strains and stresses, whose axis its strains alone do not show.
+bool is_mix(const Leg& leg) {
+  return leg.mode == Mode::control && leg.control.by_stress() && !leg.control.mean;
+}
+
+/// The axis that stress and fabric have along the whole path, if any segment says it. Throws Error where two
+/// say different ones.
+std::optional<StrainTensor> axis_of(const Path& path, const std::vector<Leg>& legs) {
   const Leg* first = nullptr;
   for (std::size_t i = 0; i < legs.size(); ++i) {
-    if (!legs[i].axis) continue;
+    if (!legs[i].axis || is_mix(legs[i])) continue;
     if (first == nullptr) first = &legs[i];
     if (!coaxial(*legs[i].axis, *first->axis))
       throw Error(path.file, path.segments[i].key,
                   "mode " + name_of(legs[i].mode) + " is not coaxial with " + name_of(first->mode) +
                       " before it: the law carries stress and fabric along one direction of shear only");
   }
+  return first != nullptr ? first->axis : std::nullopt;
 }
 
 class PathWalk {
@@ -33,12 +41,12 @@ class PathWalk {
         visit_(visit),
         nu_start_(point.state().nu),
         nominal_(path.nominal_legs(nu_start_, false)),
-        sign_(nominal_) {
-    check_axes(path, nominal_);
+        sign_(nominal_),
+        axis_(axis_of(path, nominal_)) {
     for (int row = 1; row <= rows; ++row) fractions_.push_back(static_cast<double>(row) / rows);
     for (std::size_t i = 0; i < path.segments.size(); ++i)
       if (path.segments[i].by_stress())
-        controls_.emplace_back(std::in_place, path, i, sign_.axis(i));
+        controls_.emplace_back(std::in_place, path, i, axis(i));
       else
         controls_.emplace_back();
   }
@@ -56,6 +64,7 @@ class PathWalk {
 
  private:
   static bool ends(const Status& status) { return status.failed() || status.code == Status::Code::limit; }
+  const StrainTensor& axis(std::size_t i) const { return axis_ ? *axis_ : sign_.axis(i); }
   MaterialPoint::Visit visits(std::size_t i) const {
     return [this, i](std::size_t, const State& state) { visit_(i, state); };
   }
@@ -91,14 +100,11 @@ class PathWalk {
     at.nu = state.nu;
     at.eps_vol = state.eps_vol;
     at.eps_dev = state.eps_dev;
-    at.axis = sign_.axis(i);
-    Leg leg;
-    try {
-      leg = path_.leg(i, at);
-    } catch (const Error& error) {
-      const std::string text = error.what(), key = error.key() + ": ";
-      return {Status::Code::failed, text.substr(text.find(key) + key.size())};
-    }
+    at.axis = axis(i);
+    const Leg leg = path_.leg(i, at, false);  // a target that is there already is no mistake now
+    if (const double nu = nu_start_ * std::exp(leg.eps_vol[1]); !(nu > 0 && nu < 1))
+      return {Status::Code::failed,
+              "takes the volume fraction to " + to_text(nu) + "; it must stay > 0 and < 1"};
     const double eps_vol = leg.eps_vol[1] - leg.eps_vol[0], eps_dev = leg.eps_dev[1] - leg.eps_dev[0];
     if (!path_.segments[i].stop) return point_.walk(eps_vol, eps_dev, fractions_, visits(i));
     return walk_to_end(i, {Prescribed::strain("eps_vol", 1, 0).from(state, &leg.eps_vol[1]),
@@ -149,6 +155,7 @@ class PathWalk {
   double nu_start_;
   std::vector<Leg> nominal_;
   SignConvention sign_;
+  std::optional<StrainTensor> axis_;
   std::vector<double> fractions_;
   std::vector<std::optional<PathControl>> controls_;  // of the segments whose strain is not known
   WalkedPath walked_;

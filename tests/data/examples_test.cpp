@@ -33,7 +33,7 @@ TEST(Examples, PathsHaveAStartAndCanBeWalked) {
   for (const auto& file : examples("paths")) {
     const Path path = load_path(file);
     ASSERT_TRUE(path.start.nu) << file;
-    EXPECT_EQ(path.legs(*path.start.nu).size(), path.segments.size()) << file;
+    EXPECT_EQ(path.nominal_legs(*path.start.nu).size(), path.segments.size()) << file;
   }
 }
 

@@ -140,6 +140,52 @@ TEST(Path, PresetsOfStressControl) {
   EXPECT_EQ(Path::read({path.to_json(), "p.json"}).to_json(), path.to_json());
 }
 
+TEST(Path, TwoTargetsAndStopsAreForTheLaw) {
+  const auto path = path_of(R"({"start": {"nu": 0.7}, "segments": [
+      {"mode": "d2", "controls": {"s_dev": 0.1, "eps_vol": "start"}},
+      {"mode": "d2", "amount": -0.1, "stop": {"column": "s_dev", "below": -0.1}}, {"mode": "iso", "controls": {"nu": 0.7}}]})");
+  ASSERT_EQ(path.segments[0].law_controls.size(), 2u);
+  EXPECT_EQ(path.segments[0].law_controls[0].quantity, Quantity::eps_vol);
+  EXPECT_FALSE(path.segments[0].law_controls[0].target);
+  EXPECT_EQ(path.segments[0].law_controls[1].target, 0.1);
+  EXPECT_EQ(path.segments[1].stop->column, "s_dev");
+  EXPECT_FALSE(path.segments[1].stop->above);
+  EXPECT_FALSE(path.strain_is_known());
+  EXPECT_EQ(path.nominal_legs(0.7).size(), 3u);
+  EXPECT_THROW(path.legs(0.7), Error);
+  EXPECT_EQ(Path::read({path.to_json(), "p.json"}).to_json(), path.to_json());
+  const auto refused_for_grains = [](const std::string& segment) {
+    try {
+      path_of(R"({"segments": [{"mode": "relax"}, )" + segment + "]}").need_grains_can_follow();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(refused_for_grains(R"({"mode": "d2", "controls": {"P": "start", "eps_dev": 0.1}})"),
+              testing::HasSubstr("p.json: segments[1].controls: has two targets"));
+  EXPECT_THAT(refused_for_grains(R"({"mode": "d2", "amount": 0.1, "stop": {"column": "P", "above": 1}})"),
+              testing::HasSubstr("p.json: segments[1].stop: ends a segment of the law"));
+  EXPECT_EQ(refused_for_grains(R"({"mode": "constant_p", "amount": 0.1})"), "accepted");
+}
+
+TEST(Path, RefusesTwoTargetsThatCannotBe) {
+  EXPECT_EQ(
+      refused_segment(R"({"mode": "d2", "controls": {"nu": 0.8, "eps_vol": 0.1, "P": 1}})"),
+      "p.json: segments[0].controls: must give one target or two of nu, eps_vol, eps_dev, P, sigma_dev, "
+      "s_dev, got 3");
+  EXPECT_EQ(refused_segment(R"({"mode": "uni", "controls": {"P": "start", "s_dev": "start"}})"),
+            "p.json: segments[0].controls: has nothing to do: both controls stay as at the start");
+  EXPECT_EQ(refused_segment(R"({"mode": "uni", "controls": {"P": -1, "s_dev": "start"}})"),
+            "p.json: segments[0].controls.P: must be >= 0 and <= 1000, got -1");
+  EXPECT_THAT(refused_segment(R"({"mode": "uni", "controls": {"P": "stat", "eps_dev": 1}})"),
+              testing::HasSubstr("segments[0].controls.P: must be"));
+  EXPECT_EQ(refused_segment(R"({"mode": "d2", "amount": 0.1, "stop": {"column": "P"}})"),
+            "p.json: segments[0].stop: must give above or below");
+  EXPECT_THAT(refused_segment(R"({"mode": "d2", "amount": 0.1, "stop": {"column": "t", "above": 1}})"),
+              testing::HasSubstr("segments[0].stop.column: must be one of eps_vol, eps_dev, nu"));
+}
+
 TEST(Path, StrainUnderStressControlIsNotKnownInAdvance) {
   const auto path = path_of(R"({"segments": [{"mode": "d2", "amount": 0.1},
       {"mode": "triaxial", "controls": {"eps_dev": 0.3}}, {"mode": "iso", "controls": {"nu": 0.7}}]})");
