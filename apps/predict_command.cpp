@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -12,12 +11,15 @@
 
 #include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/apps/commands.hpp"
+#include "grainlaw/apps/predict_input.hpp"
+#include "grainlaw/apps/prediction_picture.hpp"
 #include "grainlaw/apps/terminal.hpp"
-#include "grainlaw/dem/scene.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/record.hpp"
+#include "grainlaw/model/envelope.hpp"
 #include "grainlaw/model/predict.hpp"
 #include "grainlaw/model/sensitivities.hpp"
+#include "grainlaw/model/start.hpp"
 
 namespace grainlaw::apps {
 
@@ -26,33 +28,18 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string parameters, path, output, form, rtol, rows, method;
+  std::string parameters, path, output, form, rtol, rows, method, nu, P, plot, envelope;
+  std::string directions;
   std::vector<std::string> sensitivities;
   bool si = false;
 };
-
-/// What a prediction follows.
-struct Followed {
-  Path path;
-  std::optional<Record> record;  ///< of a record directory: its rows are those of the prediction
-};
-
-/// A PATH.json, or the path that a record ran, from the volume fraction it began at.
-Followed read_followed(const fs::path& where) {
-  if (!fs::is_directory(where)) return {Path::read(Reader(load_json(where), where.string())), std::nullopt};
-  const fs::path file = where / "scene.json";
-  Followed followed{dem::Scene::read(Reader(load_json(file), file.string()), where).path,
-                    Record::read_csv(where / "record.csv", {"segment", "eps_vol", "eps_dev", "nu"})};
-  const Record& record = *followed.record;
-  followed.path.start.nu = record["nu"].front() * std::exp(-record["eps_vol"].front());
-  return followed;
-}
 
 /// The name of a column of stress, or of its derivative by something, in kPa; that of any other column as it
 /// is.
 std::string name_in_kPa(const std::string& name) {
   for (const std::string stress : {"P", "sigma_dev"}) {
     if (name == stress) return stress + "_kPa";
+    if (name == "d" + stress) return "d" + stress + "_kPa";  // of a response
     if (name.starts_with("d" + stress + "/d(")) return "d" + stress + "_kPa" + name.substr(1 + stress.size());
   }
   return name;
@@ -96,8 +83,9 @@ model::PredictOptions read_options(const Arguments& arguments) {
 }
 
 std::vector<fs::path> inputs_of(const Arguments& arguments) {
-  const fs::path path = arguments.path;
-  return {arguments.parameters, path, path / "scene.json", path / "record.csv"};
+  auto inputs = files_of(arguments.path);
+  inputs.emplace_back(arguments.parameters);
+  return inputs;
 }
 
 /// At these samples, or at even rows; with the derivatives by `names`, if any.
@@ -122,7 +110,16 @@ model::Prediction predict_at(const model::ParameterSet& parameters, const Path& 
 model::Prediction predict_along(const model::ParameterSet& parameters, const Followed& followed,
                                 const model::PredictOptions& options, bool even_rows,
                                 const std::vector<std::string>& names) {
+  const auto along_measured = [&](const model::MeasuredPath& measured) {
+    auto prediction = predict_at(parameters, measured.path, measured.samples, options, names);
+    auto& segments = prediction.record["segment"];
+    std::copy_n(measured.segments.begin(), segments.size(), segments.begin());
+    return prediction;
+  };
   const Path& path = followed.path;
+  if (followed.strains && even_rows)
+    throw Error("", "--rows", "must be left out: the law follows the rows of the table");
+  if (followed.strains) return along_measured(*followed.strains);
   if (!followed.record || (even_rows && !path.by_stress()))
     return predict_at(parameters, path, std::nullopt, options, names);
   if (even_rows)
@@ -132,35 +129,68 @@ model::Prediction predict_along(const model::ParameterSet& parameters, const Fol
   if (!path.by_stress())
     return predict_at(parameters, path, model::samples_of(*followed.record, path, *path.start.nu), options,
                       names);
-  const auto measured = model::measured_path(*followed.record, path);
-  auto prediction = predict_at(parameters, measured.path, measured.samples, options, names);
-  auto& segments = prediction.record["segment"];
-  std::copy_n(measured.segments.begin(), segments.size(), segments.begin());
-  return prediction;
+  return along_measured(model::measured_path(*followed.record, path));
 }
 
-int run(const Arguments& arguments) {
-  if (!arguments.output.empty()) check_output("-o", arguments.output, inputs_of(arguments));
-  const auto options = read_options(arguments);
-  const auto parameters = model::ParameterSet::load(arguments.parameters);
-  const Followed followed = read_followed(arguments.path);
-  const model::Prediction prediction =
-      predict_along(parameters, followed, options, !arguments.rows.empty(), arguments.sensitivities);
-  Terminal terminal;
-  if (prediction.status.failed()) {
-    echo_start(terminal, prediction);
-    terminal.warn(arguments.path + ": " + prediction.status.message);
-    return failed;
-  }
-  const Record record =
-      arguments.si ? in_kPa(prediction.record, parameters.material.stress_unit_kPa()) : prediction.record;
+void check_arguments(const Arguments& arguments) {
+  for (const auto& [option, file] :
+       {std::pair{"-o", &arguments.output}, std::pair{"--plot", &arguments.plot}})
+    if (!file->empty()) check_output(option, *file, inputs_of(arguments));
+  if (!arguments.plot.empty()) check_picture(arguments.plot);
+  if (!arguments.directions.empty() && arguments.envelope.empty())
+    throw Error("", "--directions", "goes with --envelope");
+  if (!arguments.envelope.empty() && !arguments.sensitivities.empty())
+    throw Error("", "--sensitivities", "goes with the table along a path, not with --envelope");
+}
+
+/// The responses of the state where the path ended.
+model::Envelope responses_of(const model::ParameterSet& parameters, const Followed& followed,
+                             const model::Prediction& prediction, const model::PredictOptions& options,
+                             const Arguments& arguments) {
+  const double size = read_number("--envelope", arguments.envelope, above_up_to(0, 0.1));
+  const int directions =
+      arguments.directions.empty()
+          ? 72
+          : static_cast<int>(read_whole_number("--directions", arguments.directions, 1, 100'000));
+  const auto start = model::start_of(parameters, followed.path, {options.form, options.terms});
+  return model::envelope(start.law, prediction.end, {options.rtol, options.atol * std::min(1.0, size)}, size,
+                         directions);
+}
+
+void write_table(const Arguments& arguments, const Record& record) {
   if (arguments.output.empty())
     write_stdout(record.to_csv());
   else
     record.write_csv(arguments.output);
+  if (arguments.plot.empty()) return;
+  if (arguments.envelope.empty())
+    write_picture(arguments.plot, record);
+  else
+    write_envelope_picture(arguments.plot, record);
+}
+
+int run(const Arguments& arguments) {
+  check_arguments(arguments);
+  const auto options = read_options(arguments);
+  const auto parameters = model::ParameterSet::load(arguments.parameters);
+  const Followed followed = read_followed(arguments.path, arguments.nu, arguments.P);
+  const model::Prediction prediction =
+      predict_along(parameters, followed, options, !arguments.rows.empty(), arguments.sensitivities);
+  Terminal terminal;
   echo_start(terminal, prediction);
-  if (prediction.status.code != model::Status::Code::limit) return all_well;
-  terminal.warn(arguments.path + ": " + prediction.status.message);
+  model::Status status = prediction.status;
+  Record record = prediction.record;
+  const bool ended = !status.failed() && status.code != model::Status::Code::limit;
+  if (ended && !arguments.envelope.empty()) {
+    auto responses = responses_of(parameters, followed, prediction, options, arguments);
+    status = responses.status;
+    record = std::move(responses.responses);
+  }
+  // A limit leaves the rows up to it; of an envelope there is nothing without its state.
+  if (!status.failed() && (ended || arguments.envelope.empty()))
+    write_table(arguments, arguments.si ? in_kPa(record, parameters.material.stress_unit_kPa()) : record);
+  if (!status.failed() && status.code != model::Status::Code::limit) return all_well;
+  terminal.warn(arguments.path + ": " + status.message);
   return failed;
 }
 
@@ -174,7 +204,8 @@ Action add_predict(CLI::App& program) {
   arguments->method = name_of(model::PredictOptions{}.method);
   command->add_option("PARAMETERS.json", arguments->parameters, "parameter set")->required();
   command
-      ->add_option("PATH.json|RECORD_DIR", arguments->path, "path, or a record whose path and rows to follow")
+      ->add_option("PATH.json|RECORD_DIR|STRAINS.csv", arguments->path,
+                   "path, or a record or a table of strains whose rows to follow")
       ->required();
   command->add_option("-o,--output", arguments->output, "table to write (default: standard output)")
       ->type_name("FILE.csv");
@@ -198,6 +229,18 @@ Action add_predict(CLI::App& program) {
           "all that the form uses")
       ->type_name("NAME[,NAME...]|all")
       ->delimiter(',');
+  command->add_option("--nu", arguments->nu, "volume fraction at the first row of STRAINS.csv")
+      ->type_name("NUMBER");
+  command->add_option("--P", arguments->P, "pressure over k* at the first row of STRAINS.csv")
+      ->type_name("NUMBER");
+  command
+      ->add_option("--envelope", arguments->envelope,
+                   "in place of the path's table, the responses of its end to strains of this size in all "
+                   "directions")
+      ->type_name("STRAIN");
+  command->add_option("--directions", arguments->directions, "how many directions (default: 72)")
+      ->type_name("NUMBER");
+  command->add_option("--plot", arguments->plot, "also draw the table")->type_name("FILE.svg|FILE.png");
   command->add_flag("--si", arguments->si,
                     "stress in kPa: columns P_kPa, sigma_dev_kPa in place of P, sigma_dev");
   command->footer(
@@ -205,7 +248,9 @@ Action add_predict(CLI::App& program) {
       "  grainlaw predict data/thesis/parameters.json data/paths/d2-cycle.json -o d2.csv\n"
       "  grainlaw predict out/quick/parameters.json out/quick/records/uni-0.695-s1 --form reduced --si\n"
       "  grainlaw predict data/thesis/parameters.json data/paths/uni.json --sensitivities "
-      "moduli.a_I,start.nu");
+      "moduli.a_I,start.nu\n"
+      "  grainlaw predict data/thesis/parameters.json data/paths/triaxial.json -o tri.csv --plot tri.svg\n"
+      "  grainlaw predict data/thesis/parameters.json data/paths/d3.json --envelope 1e-4 --plot d3.png");
   return [arguments] { return run(*arguments); };
 }
 

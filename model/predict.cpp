@@ -88,6 +88,7 @@ Status end_status(const Status& status, const State& end) {
 struct Walked {
   Status status;
   std::vector<double> P_at_ends;  // of the legs, up to a failure
+  State end = {};
 };
 
 /// Walks the legs, with `visit(leg, state)` at every sample.
@@ -110,13 +111,15 @@ Walked walk_legs(Point& point, const Path& path, const std::vector<Leg>& legs,
     }
     walked.P_at_ends.push_back(value(point.state().P));
   }
-  walked.status = end_status({}, values_of(point.state()));
+  walked.end = values_of(point.state());
+  walked.status = end_status({}, walked.end);
   return walked;
 }
 
 void conclude(Prediction& prediction, const std::vector<Leg>& legs, const Walked& walked,
               const std::vector<Event>& events) {
   prediction.status = walked.status;
+  prediction.end = walked.end;
   tell_events(events, prediction.warnings);
   tell_drift(pressure_drift(legs, walked.P_at_ends), prediction.warnings);
 }
@@ -178,8 +181,8 @@ Prediction predict_controlled(const ParameterSet& parameters, const Path& path,
   visit(0, point.state());
   const WalkedPath walked = walk_controlled(point, tolerance, path, options.rows_per_leg, visit);
   for (const auto& warning : walked.warnings) prediction.warnings.push_back(warning);
-  conclude(prediction, walked.legs, {end_status(walked.status, point.state()), walked.P_at_ends},
-           point.events());
+  conclude(prediction, walked.legs,
+           {end_status(walked.status, point.state()), walked.P_at_ends, point.state()}, point.events());
   return prediction;
 }
 

@@ -37,6 +37,7 @@ struct Prediction {
                   ///< (Eq. 2.14)"}, ...}
   std::vector<std::string> warnings;
   Status status;
+  State end = {};  ///< where the path ended
 };
 
 /// Walks `path` from its start: one row for the start (segment 0), then options.rows_per_leg rows per leg.

@@ -68,10 +68,11 @@ bool form_rates(const Form& form, const State& begin, const Direction& d, const 
     rates.stress = stress_of_closed(form.laws, begin, d, nu, eps_dev);
   } else {
     const auto direction = with_scalar<T>(d);
-    if (!form.rate(BasicStretch<T>{nu, 1.0, 0.0}, direction, T(0.0), y, rates.v.data())) return false;
+    auto coefficients = form.coefficients(nu);
+    if (!form.rate(coefficients, BasicStretch<T>{nu, 1.0, 0.0}, direction, y, rates.v.data())) return false;
     rates.e.fill(T(0.0));
     if (d.q != 0) {
-      if (!form.rate(BasicStretch<T>{nu, 0.0, d.q}, direction, T(0.0), y, rates.e.data())) return false;
+      if (!form.rate(coefficients, BasicStretch<T>{nu, 0.0, d.q}, direction, y, rates.e.data())) return false;
       for (T& rate : rates.e) rate = d.q * rate;
     }
     if constexpr (std::is_base_of_v<Coupled, Form>)

@@ -286,10 +286,20 @@ std::vector<Area> grid(Figure& figure, std::size_t count, std::size_t columns, d
   return areas;
 }
 
-std::string script(const Figure& figure) {
-  std::string text = "set encoding utf8\nset terminal svg size " + digits(figure.width) + "," +
-                     digits(figure.height) +
-                     " dynamic enhanced font 'sans,12' name 'figure'"
+namespace {
+
+std::string terminal(const Figure& figure, Canvas canvas) {
+  if (canvas == Canvas::png)
+    return "set terminal pngcairo size " + digits(2 * figure.width) + "," + digits(2 * figure.height) +
+           " enhanced font 'sans,12' fontscale 2 linewidth 2 pointscale 2";
+  return "set terminal svg size " + digits(figure.width) + "," + digits(figure.height) +
+         " dynamic enhanced font 'sans,12' name 'figure'";
+}
+
+}  // namespace
+
+std::string script(const Figure& figure, Canvas canvas) {
+  std::string text = "set encoding utf8\n" + terminal(figure, canvas) +
                      "\nunset key\nset tics out nomirror scale 0.5 font ',11'\nset xtics offset 0,0.4\n"
                      "set grid\nset xzeroaxis lt 1 lw 1 lc rgb 'black'\n";
   std::string panels;

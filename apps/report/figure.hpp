@@ -56,8 +56,11 @@ struct Figure {
 std::vector<Area> grid(Figure& figure, std::size_t count, std::size_t columns, double panel_height,
                        double right_margin = 16);
 
+/// What a figure is drawn on: an SVG for a page or a file, or a PNG of twice as many pixels.
+enum class Canvas { svg, png };
+
 /// The gnuplot script of a figure.
-std::string script(const Figure& figure);
+std::string script(const Figure& figure, Canvas canvas = Canvas::svg);
 
 /// <figure> with legend, drawing and caption. Throws Error if gnuplot is missing or refuses.
 Markup draw(const Figure& figure);
