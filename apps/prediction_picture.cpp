@@ -24,10 +24,13 @@ std::string column_of(const Record& table, const std::string& name) {
   return table.has(name + "_kPa") ? name + "_kPa" : name;
 }
 
+/// A stress in kPa has no star, which says that one is over k*.
+std::string in_kPa(const std::string& name) {
+  return std::string(name == "P" ? "{/:Italic P}" : "{/:Italic σ}_{dev}") + " (kPa)";
+}
+
 std::string label_of(const std::string& column, const std::string& name) {
-  if (column == name) return axis_label(name, name);
-  const Symbol* symbol = find_symbol(name);
-  return (symbol ? std::string(symbol->plot) : name) + " (kPa)";
+  return column == name ? axis_label(name, name) : in_kPa(name);
 }
 
 double range_of(const std::vector<double>& values) {
@@ -95,12 +98,13 @@ void write_envelope_picture(const std::filesystem::path& file, const Record& res
     figure.panels.push_back(std::move(panel));
   };
   const bool si = responses.has("dP_kPa");
-  const std::string unit = si ? " (kPa)" : "", tail = si ? "_kPa" : "", delta = "{/Symbol D}";
+  const auto response = [&](const std::string& name) {
+    return "{/Symbol D}" + (si ? in_kPa(name) : std::string(find_symbol(name)->plot));
+  };
+  const std::string tail = si ? "_kPa" : "";
   add(areas[0], "strain increments", "eps_vol", "eps_dev", axis_label("eps_vol", "eps_vol"),
       axis_label("eps_dev", "eps_dev"));
-  add(areas[1], "responses", "dP" + tail, "dsigma_dev" + tail,
-      delta + std::string(find_symbol("P")->plot) + unit,
-      delta + std::string(find_symbol("sigma_dev")->plot) + unit);
+  add(areas[1], "responses", "dP" + tail, "dsigma_dev" + tail, response("P"), response("sigma_dev"));
   write(file, figure);
 }
 

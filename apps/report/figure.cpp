@@ -291,7 +291,7 @@ namespace {
 std::string terminal(const Figure& figure, Canvas canvas) {
   if (canvas == Canvas::png)
     return "set terminal pngcairo size " + digits(2 * figure.width) + "," + digits(2 * figure.height) +
-           " enhanced font 'sans,12' fontscale 2 linewidth 2 pointscale 2";
+           " enhanced font 'sans,12' fontscale 1.5 linewidth 2 pointscale 2";
   return "set terminal svg size " + digits(figure.width) + "," + digits(figure.height) +
          " dynamic enhanced font 'sans,12' name 'figure'";
 }

@@ -106,6 +106,68 @@ TEST_F(Predict, FollowsTheRowsOfARecord) {
   EXPECT_EQ(predict({"--rows", "5"}, "r").rows(), 1u + 5 + 1);
 }
 
+TEST_F(Predict, FollowsATableOfStrains) {
+  const Record walked = predict({"--rows", "11"}, "data/paths/d2-cycle.json");
+  std::filesystem::rename(folder / "p.csv", folder / "strains.csv");
+  const Record again = predict({}, "strains.csv");
+  ASSERT_EQ(again.rows(), walked.rows());
+  for (std::size_t i = 0; i < walked.rows(); ++i)
+    EXPECT_NEAR(again["sigma_dev"][i], walked["sigma_dev"][i], 1e-8) << i;
+  write("bare.csv", "eps_vol,eps_dev\n0,0\n0,0.1\n");
+  EXPECT_EQ(predict({"--nu", "0.7", "--P", "0.02"}, "bare.csv")["P"][0], 0.02);
+  EXPECT_TRUE(
+      refuses(run({"predict", "data/thesis/parameters.json", "bare.csv"}), {"bare.csv: nu: is missing"}));
+  write("bad.csv", "eps_vol,eps_dev\n0,0\n0,\n");
+  EXPECT_TRUE(refuses(run({"predict", "data/thesis/parameters.json", "bad.csv", "--nu", "0.7"}),
+                      {"bad.csv: eps_dev: line 3: is empty"}));
+  EXPECT_TRUE(
+      refuses(run({"predict", "data/thesis/parameters.json", "bare.csv", "--nu", "1.7"}), {"--nu: must be"}));
+  EXPECT_TRUE(
+      refuses(run({"predict", "data/thesis/parameters.json", "data/paths/d2-cycle.json", "--nu", "0.7"}),
+              {"--nu: goes with a table of strains"}));
+}
+
+TEST_F(Predict, ATargetOutOfReachLeavesTheRowsUpToIt) {
+  write("limit.json", R"({"start": {"nu": 0.711}, "segments": [
+      {"mode": "d2", "controls": {"eps_vol": "start", "s_dev": 0.3}}, {"mode": "d2", "amount": 0.1}]})");
+  const Outcome outcome =
+      run({"predict", "data/thesis/parameters.json", "limit.json", "-o", "l.csv", "--rows", "10"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("limit.json: segments[0]: no strain follows the path further"));
+  EXPECT_THAT(outcome.err, HasSubstr("s_dev = 0.166914 on the way to 0.3"));
+  EXPECT_EQ(Record::read_csv(folder / "l.csv").rows(), 7u);
+}
+
+TEST_F(Predict, DrawsItsTable) {
+  for (const char* file : {"p.svg", "p.png"}) {
+    predict({"--plot", file, "--rows", "9", "--si"}, "data/paths/triaxial.json");
+    EXPECT_GT(std::filesystem::file_size(folder / file), 5000u) << file;
+  }
+  EXPECT_THAT(read("p.svg"), HasSubstr("kPa"));
+  EXPECT_THAT(read("p.svg"), HasSubstr("</svg>"));
+  EXPECT_THAT(read("p.png"), testing::StartsWith("\x89PNG"));
+  EXPECT_TRUE(
+      refuses(run({"predict", "data/thesis/parameters.json", "data/paths/d3.json", "--plot", "p.pdf"}),
+              {"--plot: must end in .svg or .png, got p.pdf"}));
+}
+
+TEST_F(Predict, EnvelopeOfTheEndOfAPath) {
+  const Record responses =
+      predict({"--envelope", "1e-4", "--directions", "12", "--plot", "e.svg"}, "data/paths/d3.json");
+  ASSERT_EQ(responses.rows(), 12u);
+  EXPECT_EQ(responses["direction"][3], 90);
+  EXPECT_EQ(responses["eps_dev"][3], 1e-4);
+  EXPECT_LT(std::abs(responses["dsigma_dev"][3]), 0.01 * std::abs(responses["dsigma_dev"][9]));  // saturated
+  EXPECT_THAT(read("e.svg"), HasSubstr("responses"));
+  EXPECT_TRUE(predict({"--envelope", "1e-4", "--si"}, "data/paths/d3.json").has("dsigma_dev_kPa"));
+  EXPECT_TRUE(
+      refuses(run({"predict", "data/thesis/parameters.json", "data/paths/d3.json", "--directions", "9"}),
+              {"--directions: goes with --envelope"}));
+  EXPECT_TRUE(
+      refuses(run({"predict", "data/thesis/parameters.json", "data/paths/d3.json", "--envelope", "2"}),
+              {"--envelope: must be > 0 and <= 0.1"}));
+}
+
 TEST_F(Predict, EveryThesisSetPredicts) {
   for (const char* set : {"w-1.5", "w-2.0", "w-3.0", "w-10.0", "near-jamming"})
     EXPECT_GT(predict({"--form", "reduced_closed", "--rows", "3"}, "data/paths/uni.json",
