@@ -139,22 +139,33 @@ void check_arguments(const Arguments& arguments) {
   if (!arguments.plot.empty()) check_picture(arguments.plot);
   if (!arguments.directions.empty() && arguments.envelope.empty())
     throw Error("", "--directions", "goes with --envelope");
+  if (!arguments.plot.empty() && arguments.plot == arguments.output)
+    throw Error("", "--plot", "must not be the table's own file, got " + arguments.plot);
   if (!arguments.envelope.empty() && !arguments.sensitivities.empty())
     throw Error("", "--sensitivities", "goes with the table along a path, not with --envelope");
+}
+
+/// Strain increments around the end of a path.
+struct Probe {
+  double size;
+  int directions = 72;
+};
+
+std::optional<Probe> read_probe(const Arguments& arguments) {
+  if (arguments.envelope.empty()) return std::nullopt;
+  Probe probe{read_number("--envelope", arguments.envelope, above_up_to(0, 0.1))};
+  if (!arguments.directions.empty())
+    probe.directions = static_cast<int>(read_whole_number("--directions", arguments.directions, 1, 100'000));
+  return probe;
 }
 
 /// The responses of the state where the path ended.
 model::Envelope responses_of(const model::ParameterSet& parameters, const Followed& followed,
                              const model::Prediction& prediction, const model::PredictOptions& options,
-                             const Arguments& arguments) {
-  const double size = read_number("--envelope", arguments.envelope, above_up_to(0, 0.1));
-  const int directions =
-      arguments.directions.empty()
-          ? 72
-          : static_cast<int>(read_whole_number("--directions", arguments.directions, 1, 100'000));
+                             const Probe& probe) {
   const auto start = model::start_of(parameters, followed.path, {options.form, options.terms});
-  return model::envelope(start.law, prediction.end, {options.rtol, options.atol * std::min(1.0, size)}, size,
-                         directions);
+  const model::Tolerance tolerance{options.rtol, options.atol * probe.size};
+  return model::envelope(start.law, prediction.end, tolerance, probe.size, probe.directions);
 }
 
 void write_table(const Arguments& arguments, const Record& record) {
@@ -172,6 +183,7 @@ void write_table(const Arguments& arguments, const Record& record) {
 int run(const Arguments& arguments) {
   check_arguments(arguments);
   const auto options = read_options(arguments);
+  const auto probe = read_probe(arguments);
   const auto parameters = model::ParameterSet::load(arguments.parameters);
   const Followed followed = read_followed(arguments.path, arguments.nu, arguments.P);
   const model::Prediction prediction =
@@ -181,13 +193,13 @@ int run(const Arguments& arguments) {
   model::Status status = prediction.status;
   Record record = prediction.record;
   const bool ended = !status.failed() && status.code != model::Status::Code::limit;
-  if (ended && !arguments.envelope.empty()) {
-    auto responses = responses_of(parameters, followed, prediction, options, arguments);
+  if (ended && probe) {
+    auto responses = responses_of(parameters, followed, prediction, options, *probe);
     status = responses.status;
     record = std::move(responses.responses);
   }
   // A limit leaves the rows up to it; of an envelope there is nothing without its state.
-  if (!status.failed() && (ended || arguments.envelope.empty()))
+  if (!status.failed() && (ended || !probe))
     write_table(arguments, arguments.si ? in_kPa(record, parameters.material.stress_unit_kPa()) : record);
   if (!status.failed() && status.code != model::Status::Code::limit) return all_well;
   terminal.warn(arguments.path + ": " + status.message);
