@@ -125,7 +125,7 @@ grainlaw_outcome update_all(grainlaw_context& context, const Points& points, std
   const auto shares = static_cast<std::size_t>(threads);
   if (context.workspaces.size() < shares) context.workspaces.resize(shares);
   std::vector<grainlaw_outcome> outcomes(shares);
-  const auto work = [&](int thread) noexcept {
+  auto work = [&](int thread) noexcept {
     const auto share = static_cast<std::size_t>(thread);
     outcomes[share] = update_range(*context.law, context.workspaces[share], points, count * share / shares,
                                    count * (share + 1) / shares);

@@ -66,16 +66,17 @@ class Steered {
             eps_dev = begin_.eps_dev + z[Form::size + 1];
     if (!form_rates(form_, begin_, begin_.direction, nu, eps_dev, z, rates)) return false;
     std::array<std::array<T, 2>, 2> slope;
-    std::array<T, 2> a;
+    std::array<T, 2> a, size_of_a;
     for (std::size_t i = 0; i < 2; ++i) {
       const Prescribed& control = controls_[i];
       slope[i] = control.slopes(nu, rates.stress);
-      a[i] = control.change() + pull * (control.begin + control.change() * t -
-                                        control.value(nu, eps_vol, eps_dev, rates.stress));
+      const T value = control.value(nu, eps_vol, eps_dev, rates.stress);
+      a[i] = control.change() + pull * (control.begin + control.change() * t - value);
+      size_of_a[i] = abs(a[i]) + pull * (rounding / negligible) * (abs(value) + std::abs(control.begin));
     }
     strain.determinant = slope[0][0] * slope[1][1] - slope[0][1] * slope[1][0];
     strain.numerator = slope[0][0] * a[1] - slope[1][0] * a[0];
-    strain.terms = abs(slope[0][0] * a[1]) + abs(slope[1][0] * a[0]);
+    strain.terms = abs(slope[0][0]) * size_of_a[1] + abs(slope[1][0]) * size_of_a[0];
     if (q_ == 0) {
       strain.determinant = slope[leading_][0];
       strain.v = a[leading_] / strain.determinant;
@@ -139,8 +140,9 @@ class Steered {
  private:
   /// Errors of the prescribed quantities decay with exp(-pull t).
   static constexpr double pull = 100;
-  /// A rate of shear this small against what cancels in it is rounding.
-  static constexpr double negligible = 1e-12;
+  /// A rate of shear this small against what cancels in it is rounding, as are differences of values this
+  /// small against them.
+  static constexpr double negligible = 1e-12, rounding = 1e-15;
 
   bool prescribes_shear() const { return controls_[0].is_shear() || controls_[1].is_shear(); }
 
