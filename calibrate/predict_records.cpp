@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The thesis's forms, and the coupled one with every term past the thesis that the set has numbers for and
-/// the test can show.
+/// The thesis's forms, the coupled one with every term past the thesis that the set has numbers for and the
+/// test can show, and the one with memory with these.
 std::vector<model::Choice> choices_for(const TestRecord& test, const model::ParameterSet& parameters) {
   std::vector<model::Choice> choices;
   for (const model::Form form : {model::Form::reduced_closed, model::Form::reduced, model::Form::coupled})
@@ -27,6 +27,9 @@ std::vector<model::Choice> choices_for(const TestRecord& test, const model::Para
   terms.volumetric = test.mode == "uni" && parameters.volumetric.has_value();
   terms.energy = parameters.moduli && parameters.moduli->a_F.has_value();
   if (terms != model::Terms{}) choices.push_back({model::Form::coupled, terms});
+  terms.energy = false;
+  const auto& memory = parameters.memory;
+  if (memory && memory->eps_c && memory->eps_r) choices.push_back({model::Form::memory, terms});
   return choices;
 }
 

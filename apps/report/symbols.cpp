@@ -236,6 +236,7 @@ std::string mode_name(const std::string& mode) {
 std::string form_name(const std::string& form) {
   if (form == "reduced_closed") return "reduced, closed form";
   if (form == "reduced") return "reduced, rate form";
+  if (form.starts_with("memory")) return "with memory" + form.substr(6);
   return form;
 }
 

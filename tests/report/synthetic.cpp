@@ -55,7 +55,7 @@ model::PressureCurve pressure_curve(const std::string& mode) {
 
 double saturated(const std::string& quantity, double nu) {
   for (const auto& [name, q] : table_2_2) {
-    if (name == quantity) return model::saturation({q[0], q[1], q[2], q[3]}, nu);
+    if (name == quantity) return model::saturation(model::Saturation{q[0], q[1], q[2], q[3]}, nu);
   }
   return std::nan("");
 }
