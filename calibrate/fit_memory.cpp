@@ -101,6 +101,34 @@ FitParameter held_parameter(const std::string& name, const KnownValue& at) {
   return p;
 }
 
+bool is_found(const FitEstimate& e) { return e.determined && !e.held && e.stderr_.value_or(0) > 0; }
+
+/// Weighted mean where both found it, so that one number serves all laws.
+LimitDensity common_limit(const FitEstimate& compressed, const FitEstimate& sheared) {
+  LimitDensity out{compressed.value, compressed.stderr_.value_or(0), {}, {}};
+  double weights = 0, sum = 0;
+  if (is_found(compressed)) out.by_over_compression = {compressed.value, *compressed.stderr_};
+  if (is_found(sheared)) out.by_shear = {sheared.value, *sheared.stderr_};
+  for (const Estimate& e : {out.by_over_compression, out.by_shear}) {
+    if (!e.known()) continue;
+    weights += 1 / (e.error * e.error);
+    sum += e.value / (e.error * e.error);
+  }
+  if (weights == 0) return out;
+  out.value = sum / weights;
+  out.error = std::sqrt(1 / weights);
+  return out;
+}
+
+/// phi_SJ is the first parameter; runs at or below it cannot jam by the law.
+void hold_limit(FitProblem& problem, const LimitDensity& limit) {
+  problem.parameters.front().held = true;
+  problem.parameters.front().initial = limit.value;
+  problem.parameters.front().held_error = limit.error;
+  for (FitSeries& s : problem.series)
+    std::erase_if(s.points, [&](const FitPoint& p) { return p.x <= limit.value * (1 + off_phi_SJ); });
+}
+
 }  // namespace
 
 std::string name_of(Growth growth) {
@@ -204,7 +232,9 @@ FitProblem shear_jamming_problem(const std::vector<ShearJamming>& runs, const Kn
   });
   problem.points = Points::runs;
   problem.starts = starts;
-  problem.parameters = {limit_density("phi_SJ_sheared", {{"phi_SJ_sheared", phi_SJ}}, problem.series, 1),
+  const double highest = lowest_x(problem.series, 0.7) * (1 - off_phi_SJ);
+  const KnownValue limit(std::min(phi_SJ.value, highest), phi_SJ.error);
+  problem.parameters = {limit_density("phi_SJ_sheared", {{"phi_SJ_sheared", limit}}, problem.series, 1),
                         known_parameter(known, "alpha", 1.4, 0.2, 10, 1, 0),
                         known_parameter(known, "eps0", 0.1, 1e-3, 2, 0.1, 2)};
   return problem;
@@ -232,14 +262,21 @@ MemoryFit fit_memory(const std::vector<CycleDensity>& cycles, const std::vector<
   MemoryFit out;
   out.over_compression_law = over_compression_problem(cycles, Growth::stretched, known);
   out.over_compression = fit(out.over_compression_law);
-  const FitEstimate& limit = out.over_compression["phi_SJ"];
-  const KnownValue phi_SJ(limit.value, limit.stderr_.value_or(0));
-  out.growth = compare_growths(cycles, phi_SJ.value);
+  const FitEstimate compressed = out.over_compression["phi_SJ"];
   out.entangled = entanglement(out.over_compression_law, out.over_compression);
-  out.shear_law = shear_jamming_problem(runs, phi_SJ, known);
+  out.shear_law = shear_jamming_problem(runs, {compressed.value, compressed.stderr_.value_or(0)}, known);
   out.shear = fit(out.shear_law);
-  const FitEstimate &alpha = out.shear["alpha"], &sheared = out.shear["phi_SJ_sheared"];
-  out.reversal_law = reversal_problem(runs, {sheared.value, sheared.stderr_.value_or(0)},
+  const FitEstimate sheared = out.shear["phi_SJ_sheared"];
+  out.phi_SJ = common_limit(compressed, sheared);
+  if (is_found(sheared)) {  // else the fits stand at one phi_SJ already
+    hold_limit(out.over_compression_law, out.phi_SJ);
+    hold_limit(out.shear_law, out.phi_SJ);
+    out.over_compression = fit(out.over_compression_law);
+    out.shear = fit(out.shear_law);
+  }
+  out.growth = compare_growths(cycles, out.phi_SJ.value);
+  const FitEstimate& alpha = out.shear["alpha"];
+  out.reversal_law = reversal_problem(runs, {out.phi_SJ.value, out.phi_SJ.error},
                                       {alpha.value, alpha.stderr_.value_or(0)}, known);
   out.reversal = fit(out.reversal_law);
   return out;

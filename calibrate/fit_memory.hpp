@@ -55,7 +55,8 @@ std::vector<Entanglement> entanglement(const FitProblem& problem, const FitResul
 
 /// eps_SJ = eps0 {-ln[(phi - phi_SJ)/(phi_J0 - phi_SJ)]}^(1/alpha) (Eq. 5.2) over phi, with phi_J0 as the
 /// known: first loadings that jam, of packings that are not jammed before. Parameters phi_SJ_sheared (of
-/// these runs alone; held at `phi_SJ` where they do not tell), alpha, eps0.
+/// these runs alone; where they do not tell, held at `phi_SJ`, at most just below the loosest run), alpha,
+/// eps0.
 FitProblem shear_jamming_problem(const std::vector<ShearJamming>& runs, const KnownValue& phi_SJ,
                                  const KnownValues& known);
 
@@ -64,12 +65,21 @@ FitProblem shear_jamming_problem(const std::vector<ShearJamming>& runs, const Kn
 FitProblem reversal_problem(const std::vector<ShearJamming>& runs, const KnownValue& phi_SJ,
                             const KnownValue& alpha, const KnownValues& known);
 
-/// Group memory.
+/// phi_SJ: one number for all laws, the weighted mean of what over-compression and shear say of it, each by
+/// itself; that of the thesis where neither does.
+struct LimitDensity {
+  double value = 0, error = 0;
+  Estimate by_over_compression, by_shear;  ///< unknown where not determined
+  bool found() const { return by_over_compression.known() || by_shear.known(); }
+};
+
+/// Group memory. Where shear tells phi_SJ, the fits stand at the common one, held with its error.
 struct MemoryFit {
+  LimitDensity phi_SJ;
   FitResult over_compression, shear, reversal;
   FitProblem over_compression_law, shear_law, reversal_law;  ///< as fitted, with their data
   std::vector<GrowthComparison> growth;
-  std::vector<Entanglement> entangled;  ///< of over_compression
+  std::vector<Entanglement> entangled;  ///< of over_compression with phi_SJ free
 };
 
 /// All of them; never throws for want of data, see FitEstimate::determined.

@@ -195,7 +195,15 @@ Json memory_json(const MemoryFit& fit, const std::vector<ShearJamming>& runs) {
   for (const Entanglement& e : fit.entangled)
     entangled.push_back(
         {{"parameters", {e.first, e.second}}, {"correlation", number_or_null(e.correlation)}});
-  return {{"growth", growth},
+  const auto pair = [](const Estimate& e) {
+    return Json{{"value", number_or_null(e.value)}, {"stderr", number_or_null(e.error)}};
+  };
+  return {{"phi_SJ",
+           {{"over_compression", pair(fit.phi_SJ.by_over_compression)},
+            {"shear", pair(fit.phi_SJ.by_shear)},
+            {"value", number_or_null(fit.phi_SJ.value)},
+            {"stderr", number_or_null(fit.phi_SJ.error)}}},
+          {"growth", growth},
           {"entangled", entangled},
           {"agreement", {agreement(runs, JamSign::percolation), agreement(runs, JamSign::pressure)}}};
 }

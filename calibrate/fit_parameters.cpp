@@ -275,6 +275,12 @@ std::optional<MemoryLaws> memory_laws(const MemoryFit& fit, const Reference& ref
                      fill(law, shear_jamming_keys, fit.shear, fallback, thesis, reference) &&
                      fill(law, reversal_keys, fit.reversal, fallback, thesis, reference);
   if (!known) return std::nullopt;
+  if (fit.phi_SJ.found()) {
+    law.phi_SJ.value = fit.phi_SJ.value;
+    law.phi_SJ.stderr_ = fit.phi_SJ.error;
+    law.phi_SJ.source = "fit";
+    law.phi_SJ.note = fit.phi_SJ.by_shear.known() ? "with that of the strains that jam by shear" : "";
+  }
   const FitEstimate& phi_cr = fit.reversal["phi_cr"];
   if (fit.reversal.ran && phi_cr.determined) law.phi_cr = from_estimate(phi_cr, thesis, reference, "");
   return law;

@@ -24,15 +24,20 @@ std::vector<bool> smoothed(const std::vector<bool>& jammed) {
   return out;
 }
 
-/// Whether it stays jammed from row i on.
-bool sustained(const std::vector<double>& strain, const std::vector<bool>& jammed, std::size_t i) {
-  if (!jammed[i] || strain.back() - strain[i] < 0.5 * sustained_strain) return false;
+bool mostly(const std::vector<double>& strain, const std::vector<bool>& jammed, std::size_t from,
+            double up_to) {
   std::size_t yes = 0, all = 0;
-  for (std::size_t j = i; j < strain.size() && strain[j] <= strain[i] + sustained_strain; ++j) {
+  for (std::size_t j = from; j < strain.size() && strain[j] <= up_to; ++j) {
     ++all;
     yes += jammed[j] ? 1 : 0;
   }
   return static_cast<double>(yes) >= sustained_share * static_cast<double>(all);
+}
+
+/// Whether it stays jammed from row i on.
+bool sustained(const std::vector<double>& strain, const std::vector<bool>& jammed, std::size_t i) {
+  return jammed[i] && strain.back() - strain[i] >= 0.5 * sustained_strain &&
+         mostly(strain, jammed, i, strain[i] + sustained_strain) && mostly(strain, jammed, i, strain.back());
 }
 
 bool shows(const TestRecord& test, std::size_t row, JamSign sign, const Selection& selection) {
@@ -159,7 +164,7 @@ std::vector<ShearJamming> shear_jammings(const TestRecord& test, const CycleDens
 
 std::string shear_jamming_rule(const Selection& selection) {
   return "first strain from which three quarters of the rows over " + to_text(sustained_strain) +
-         " have C* >= 6 (by pressure: P >= " + to_text(selection.P_min) +
+         ", and of those to the leg's end, have C* >= 6 (by pressure: P >= " + to_text(selection.P_min) +
          "), each row by the majority of the five about it; by percolation: the first row whose strong "
          "forces "
          "percolate along three axes";

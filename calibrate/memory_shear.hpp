@@ -23,8 +23,9 @@ std::string name_of(JamSign sign);
 inline constexpr double isostatic_C_star = 6;
 /// A row counts by the majority of the rows up to two before and two after it, as Fig. 5.11 smooths.
 inline constexpr std::size_t smoothing = 2;
-/// Jammed from a row on: at least three quarters of the rows over this much strain, or to the leg's end if
-/// that is at least half as far. A flow near jamming loses its balance for a moment now and then.
+/// Jammed from a row on: at least three quarters of the rows over this much strain, and of all to the leg's
+/// end, which must be at least half as far. A flow near jamming loses its balance now and then; one that is
+/// jammed for a while only, or as often as not, is not jammed.
 inline constexpr double sustained_strain = 0.04, sustained_share = 0.75;
 
 /// One leg of shear of one run.
