@@ -188,6 +188,7 @@ BasicLaws<P> laws_of(const ParameterSet& parameters, const Choice& choice, const
 
 template BasicLaws<double> laws_of(const ParameterSet&, const Choice&, const Reading<double>&);
 template BasicLaws<Slopes> laws_of(const ParameterSet&, const Choice&, const Reading<Slopes>&);
+template BasicLaws<FewSlopes> laws_of(const ParameterSet&, const Choice&, const Reading<FewSlopes>&);
 
 Laws laws_of(const ParameterSet& parameters, const Choice& choice) {
   return laws_of<double>(parameters, choice, [](const Parameter& parameter) { return parameter.value; });

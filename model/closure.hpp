@@ -73,7 +73,8 @@ using Reading = std::function<P(const Parameter&)>;
 void check_finite(const ParameterSet& parameters, const Parameter& parameter);
 
 /// Resolves the closure. Throws Error naming the parameter file and the row or group that the form needs and
-/// the set lacks, or a parameter that is no finite number. Instantiated for double and Slopes.
+/// the set lacks, or a parameter that is no finite number. Instantiated for double, Slopes and
+/// FewSlopes.
 template <class P>
 BasicLaws<P> laws_of(const ParameterSet& parameters, const Choice& choice, const Reading<P>& read);
 Laws laws_of(const ParameterSet& parameters, const Choice& choice);

@@ -114,6 +114,8 @@ struct Dual {
 /// Numbers with the derivatives that sensitivities carry.
 inline constexpr std::size_t most_slopes = 64;
 using Slopes = Dual<most_slopes>;
+/// The same for few: what is computed for slopes that nobody asked for costs as much.
+using FewSlopes = Dual<12>;
 
 /// The number without its derivatives.
 inline double value(double x) { return x; }

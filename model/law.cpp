@@ -37,6 +37,7 @@ BasicLaw<P> make_law(const ParameterSet& parameters, const Choice& choice, const
 
 template BasicLaw<double> make_law(const ParameterSet&, const Choice&, const Reading<double>&);
 template BasicLaw<Slopes> make_law(const ParameterSet&, const Choice&, const Reading<Slopes>&);
+template BasicLaw<FewSlopes> make_law(const ParameterSet&, const Choice&, const Reading<FewSlopes>&);
 
 Law make_law(const ParameterSet& parameters, const Choice& choice) {
   return make_law<double>(parameters, choice, [](const Parameter& parameter) { return parameter.value; });

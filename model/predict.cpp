@@ -61,10 +61,10 @@ void check_samples(const std::vector<Sample>& samples, std::size_t legs) {
 }
 
 /// The slopes of sensitive_columns(), name by name.
-void append_slopes(std::vector<double>& row, const BasicState<Slopes>& state, std::size_t names) {
+template <class S>
+void append_slopes(std::vector<double>& row, const BasicState<S>& state, std::size_t names) {
   for (std::size_t k = 0; k < names; ++k)
-    for (const Slopes* x : {&state.P, &state.sigma_dev, &state.F_dev, &state.phi_J})
-      row.push_back(x->slope[k]);
+    for (const S* x : {&state.P, &state.sigma_dev, &state.F_dev, &state.phi_J}) row.push_back(x->slope[k]);
 }
 
 std::string where(double nu, double eps_dev) {
@@ -148,6 +148,45 @@ std::vector<std::string> idle_names(const Record& record, const std::vector<std:
   return result;
 }
 
+template <class S>
+Slopes widened(const S& x) {
+  Slopes wide(x.value);
+  std::copy(x.slope.begin(), x.slope.end(), wide.slope.begin());
+  return wide;
+}
+
+template <class S>
+SensitivePrediction predict_with(const Seeds& seeds, const ParameterSet& parameters, const Path& path,
+                                 const std::vector<Sample>& samples, const PredictOptions& options) {
+  const Choice choice{options.form, options.terms};
+  const StartState start = start_of(parameters, path, choice);
+  const auto slopes = seeds.start<S>(parameters, path, choice);
+  const std::vector<Leg> legs = path.legs(start.state.nu);
+  check_legs(path, legs);
+  check_samples(samples, legs.size());
+  const std::vector<std::string>& names = seeds.names();
+  std::vector<std::string> columns = prediction_columns();
+  for (const std::string& name : names)
+    for (const std::string& column : sensitive_columns()) columns.push_back(sensitivity_column(column, name));
+  SensitivePrediction result{{Record(columns), start.echo, start.warnings, {}}, {}, {}};
+  SensitivePoint<S> point(start.law, slopes.law, slopes.state, {options.rtol, options.atol}, seeds.scales(),
+                          options.method);
+  const auto append = [&](std::size_t leg, const BasicState<S>& state) {
+    std::vector<double> row = row_of(point.law(), values_of(state), leg);
+    append_slopes(row, state, names.size());
+    result.prediction.record.append(row);
+  };
+  const Walked walked = walk_legs(point, path, legs, samples, append);
+  std::vector<Event> events;
+  for (const auto& e : point.events()) {
+    events.push_back({e.jammed, e.nu.value, e.eps_vol.value, e.eps_dev.value});
+    result.events.push_back({e.jammed, widened(e.nu), widened(e.eps_vol), widened(e.eps_dev)});
+  }
+  conclude(result.prediction, legs, walked, events);
+  result.idle = idle_names(result.prediction.record, names);
+  return result;
+}
+
 }  // namespace
 
 Prediction predict(const ParameterSet& parameters, const Path& path, const std::vector<Sample>& samples,
@@ -198,30 +237,9 @@ SensitivePrediction predict_sensitivities(const ParameterSet& parameters, const 
                                           const std::vector<std::string>& names,
                                           const PredictOptions& options) {
   const Seeds seeds(parameters, path, names);
-  const StartState start = start_of(parameters, path, {options.form, options.terms});
-  const auto slopes = seeds.start(parameters, path, {options.form, options.terms});
-  const std::vector<Leg> legs = path.legs(start.state.nu);
-  check_legs(path, legs);
-  check_samples(samples, legs.size());
-  std::vector<std::string> columns = prediction_columns();
-  for (const std::string& name : names)
-    for (const std::string& column : sensitive_columns()) columns.push_back(sensitivity_column(column, name));
-  SensitivePrediction result{{Record(columns), start.echo, start.warnings, {}}, {}, {}};
-  SensitivePoint point(start.law, slopes.law, slopes.state, {options.rtol, options.atol}, seeds.scales(),
-                       options.method);
-  const auto append = [&](std::size_t leg, const BasicState<Slopes>& state) {
-    std::vector<double> row = row_of(point.law(), values_of(state), leg);
-    append_slopes(row, state, names.size());
-    result.prediction.record.append(row);
-  };
-  const Walked walked = walk_legs(point, path, legs, samples, append);
-  result.events = point.events();
-  std::vector<Event> events;
-  for (const SensitiveEvent& e : result.events)
-    events.push_back({e.jammed, e.nu.value, e.eps_vol.value, e.eps_dev.value});
-  conclude(result.prediction, legs, walked, events);
-  result.idle = idle_names(result.prediction.record, names);
-  return result;
+  return names.size() <= FewSlopes().slope.size()
+             ? predict_with<FewSlopes>(seeds, parameters, path, samples, options)
+             : predict_with<Slopes>(seeds, parameters, path, samples, options);
 }
 
 SensitivePrediction predict_sensitivities(const ParameterSet& parameters, const Path& path,

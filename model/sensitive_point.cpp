@@ -10,25 +10,22 @@ namespace grainlaw::model {
 
 namespace {
 
-using SlopesState = BasicState<Slopes>;
-using SlopesStretch = BasicStretch<Slopes>;
-
 /// Variables of an integration: values and slopes apart, as the integrator takes them.
-template <std::size_t size>
+template <class S, std::size_t size>
 struct Variables {
   std::array<double, size> y;
   std::vector<double> s;  // [i + size k]
 
-  Variables(const std::array<Slopes, size>& from, std::size_t count) : s(size * count) {
+  Variables(const std::array<S, size>& from, std::size_t count) : s(size * count) {
     for (std::size_t i = 0; i < size; ++i) y[i] = from[i].value;
     split(from.data(), s.data(), count);
   }
-  static void split(const Slopes* from, double* to, std::size_t count) {
+  static void split(const S* from, double* to, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k)
       for (std::size_t i = 0; i < size; ++i) to[i + size * k] = from[i].slope[k];
   }
-  static std::array<Slopes, size> joined(const double* y, const double* s, std::size_t count) {
-    std::array<Slopes, size> out;
+  static std::array<S, size> joined(const double* y, const double* s, std::size_t count) {
+    std::array<S, size> out;
     for (std::size_t i = 0; i < size; ++i) {
       out[i].value = y[i];
       for (std::size_t k = 0; k < count; ++k) out[i].slope[k] = s[i + size * k];
@@ -38,9 +35,9 @@ struct Variables {
 };
 
 /// From y at the number `from` to y at t, the same number with slopes.
-template <class Rates, std::size_t size>
-bool move_to(const Rates& rates, const Slopes& t, double from, std::array<Slopes, size>& y) {
-  std::array<Slopes, size> dydt;
+template <class Rates, class S, std::size_t size>
+bool move_to(const Rates& rates, const S& t, double from, std::array<S, size>& y) {
+  std::array<S, size> dydt;
   if (!rates(from, y, dydt)) return false;
   for (std::size_t i = 0; i < size; ++i) y[i] = y[i] + dydt[i] * (t - from);
   return true;
@@ -48,14 +45,14 @@ bool move_to(const Rates& rates, const Slopes& t, double from, std::array<Slopes
 
 /// From a state whose P* (y[0]) is about `pressure` to where it is exactly that, in value and slopes. The
 /// step is taken in P*, by the midpoint rule (Henon): in t the rates may become infinite as P* vanishes.
-template <class Rates, std::size_t size>
-bool move_to_pressure(const Rates& rates, double pressure, Slopes& t, std::array<Slopes, size>& y) {
-  const Slopes way = pressure - y[0], start = t;
-  const std::array<Slopes, size> begin = y;
+template <class Rates, class S, std::size_t size>
+bool move_to_pressure(const Rates& rates, double pressure, S& t, std::array<S, size>& y) {
+  const S way = pressure - y[0], start = t;
+  const std::array<S, size> begin = y;
   for (const double part : {0.5, 1.0}) {
-    std::array<Slopes, size> dydt;
+    std::array<S, size> dydt;
     if (!rates(t, y, dydt)) return false;
-    const Slopes step = part * way / dydt[0];
+    const S step = part * way / dydt[0];
     t = start + step;
     for (std::size_t i = 0; i < size; ++i) y[i] = begin[i] + dydt[i] * step;
   }
@@ -64,23 +61,23 @@ bool move_to_pressure(const Rates& rates, double pressure, Slopes& t, std::array
 
 /// CVODES: the values by `plain`, and d/dt of the slopes, J s_k + d rate/dp_k, from one evaluation of the
 /// rate with numbers that carry them.
-template <class Plain>
+template <class S, class Plain>
 struct BySensitiveIntegrator {
   const Plain& plain;
   Integrator& integrator;
   std::size_t count;
 
   template <class Form, class NextSample, class Visit>
-  Reached<Slopes> operator()(const Form& form, SlopesState& state, const SlopesStretch& stretch,
-                             NextSample next_sample, Visit visit) const {
+  Reached<S> operator()(const Form& form, BasicState<S>& state, const BasicStretch<S>& stretch,
+                        NextSample next_sample, Visit visit) const {
     constexpr std::size_t size = Form::size;
-    using Both = Variables<size>;
-    const SlopesState begin = state;
+    using Both = Variables<S, size>;
+    const BasicState<S> begin = state;
     const Stretch values = values_of(stretch);
     const Direction direction = values_of(begin.direction);
     System system = system_of(plain, values, direction);
-    using Numbers = std::array<Slopes, size>;
-    const auto rates = [&](const Slopes& t, const Numbers& y, Numbers& dydt) {
+    using Numbers = std::array<S, size>;
+    const auto rates = [&](const S& t, const Numbers& y, Numbers& dydt) {
       return rate_at(form, stretch, begin.direction, t, y.data(), dydt.data());
     };
     system.sensitivity_rate = [&](double t, const double* y, const double* s, double* dsdt) {
@@ -93,7 +90,7 @@ struct BySensitiveIntegrator {
     if (Status status = integrator.start(system, 0, 1, at.y.data(), at.s.data()); status.failed())
       return {status, 0.0};
     for (bool last = false; !last;) {
-      Slopes t = next_sample();
+      S t = next_sample();
       last = !(t <= 1);
       if (last) t = 1.0;
       const auto arrival = integrator.advance(t.value, at.y.data(), at.s.data());
@@ -103,7 +100,7 @@ struct BySensitiveIntegrator {
       bool defined = true;
       if (arrival.event)
         defined = move_to_pressure(rates, smallest_pressure, t = arrival.t, y);
-      else if (t.slope != Slopes().slope)
+      else if (t.slope != S().slope)
         defined = move_to(rates, t, arrival.t, y);
       if (!defined)
         return {{Status::Code::failed, "the law is not defined where it is to be differentiated"}, arrival.t};
@@ -117,8 +114,9 @@ struct BySensitiveIntegrator {
 
 }  // namespace
 
-SensitivePoint::SensitivePoint(Law law, BasicLaw<Slopes> slopes_law, const BasicState<Slopes>& start,
-                               Tolerance tolerance, const std::vector<double>& scales, Method method)
+template <class S>
+SensitivePoint<S>::SensitivePoint(Law law, BasicLaw<S> slopes_law, const BasicState<S>& start,
+                                  Tolerance tolerance, const std::vector<double>& scales, Method method)
     : law_(std::move(law)), slopes_law_(std::move(slopes_law)), state_(start), count_(scales.size()) {
   std::visit(
       [&]<class Form>(const Form&) {
@@ -128,30 +126,31 @@ SensitivePoint::SensitivePoint(Law law, BasicLaw<Slopes> slopes_law, const Basic
       law_);
 }
 
-Status SensitivePoint::walk(double eps_vol, double eps_dev, std::span<const double> samples,
-                            const Visit& visit) {
+template <class S>
+Status SensitivePoint<S>::walk(double eps_vol, double eps_dev, std::span<const double> samples,
+                               const Visit& visit) {
   if (auto reason = not_finite(state_, eps_vol, eps_dev)) return {Status::Code::failed, *reason};
   if (eps_vol == 0 && eps_dev == 0) {
     for (std::size_t i = 0; i < samples.size(); ++i) visit(i, state_);
     return {};
   }
-  const SlopesStretch whole{state_.nu, eps_vol, eps_dev};
+  const BasicStretch<S> whole{state_.nu, eps_vol, eps_dev};
   if (auto reason = objection(law_, values_of(whole))) return {Status::Code::failed, *reason};
-  const SlopesState before = state_;
+  const BasicState<S> before = state_;
   const std::size_t events_before = events_.size();
-  const auto note = [&](bool jammed, const SlopesState& state) {
+  const auto note = [&](bool jammed, const BasicState<S>& state) {
     events_.push_back({jammed, state.nu, state.eps_vol, state.eps_dev});
   };
   const auto along = [&](const auto& form, auto solver) {
-    return Walk(form, state_, Course<Slopes>(whole, samples), solver, visit, note).run();
+    return Walk(form, state_, Course<S>(whole, samples), solver, visit, note).run();
   };
   Status status = std::visit(
-      [&]<template <class> class Form>(const Form<Slopes>& form) {
-        if constexpr (Form<Slopes>::size == 0)
+      [&]<template <class> class Form>(const Form<S>& form) {
+        if constexpr (Form<S>::size == 0)
           return along(form, Closed{});
         else
-          return along(
-              form, BySensitiveIntegrator<Form<double>>{std::get<Form<double>>(law_), *integrator_, count_});
+          return along(form, BySensitiveIntegrator<S, Form<double>>{std::get<Form<double>>(law_),
+                                                                    *integrator_, count_});
       },
       slopes_law_);
   if (!status.failed()) return status;
@@ -160,5 +159,8 @@ Status SensitivePoint::walk(double eps_vol, double eps_dev, std::span<const doub
   events_.resize(events_before);
   return status;
 }
+
+template class SensitivePoint<Slopes>;
+template class SensitivePoint<FewSlopes>;
 
 }  // namespace grainlaw::model

@@ -16,38 +16,41 @@
 namespace grainlaw::model {
 
 /// An Event and how it moves with the parameters.
-struct SensitiveEvent {
+template <class S>
+struct BasicSensitiveEvent {
   bool jammed;
-  Slopes nu, eps_vol, eps_dev;
+  S nu, eps_vol, eps_dev;
 };
+using SensitiveEvent = BasicSensitiveEvent<Slopes>;
 
-/// Walks as MaterialPoint does. Slope k of every number is its derivative with respect to variable k; the
-/// values and the slopes are within the tolerance.
+/// Walks as MaterialPoint does. S is Slopes or FewSlopes; slope k of every number is its derivative with
+/// respect to variable k; the values and the slopes are within the tolerance.
+template <class S>
 class SensitivePoint {
  public:
   /// `law` and `slopes_law` are the same law. `scales` are the natural sizes of the variables, > 0, at most
-  /// most_slopes of them.
-  SensitivePoint(Law law, BasicLaw<Slopes> slopes_law, const BasicState<Slopes>& start, Tolerance tolerance,
+  /// as many as S has.
+  SensitivePoint(Law law, BasicLaw<S> slopes_law, const BasicState<S>& start, Tolerance tolerance,
                  const std::vector<double>& scales, Method method = Method::bdf);
 
   const Law& law() const { return law_; }
-  const BasicState<Slopes>& state() const { return state_; }
+  const BasicState<S>& state() const { return state_; }
 
-  using Visit = std::function<void(std::size_t, const BasicState<Slopes>&)>;
+  using Visit = std::function<void(std::size_t, const BasicState<S>&)>;
   /// As MaterialPoint::walk(). The strains themselves depend on no variable.
   Status walk(double eps_vol, double eps_dev, std::span<const double> samples, const Visit& visit);
 
   void relax() { state_.direction.q = 0; }
 
-  const std::vector<SensitiveEvent>& events() const { return events_; }
+  const std::vector<BasicSensitiveEvent<S>>& events() const { return events_; }
 
  private:
   Law law_;
-  BasicLaw<Slopes> slopes_law_;
-  BasicState<Slopes> state_;
+  BasicLaw<S> slopes_law_;
+  BasicState<S> state_;
   std::size_t count_;
   std::optional<Integrator> integrator_;  // none where there is nothing to integrate
-  std::vector<SensitiveEvent> events_;
+  std::vector<BasicSensitiveEvent<S>> events_;
 };
 
 }  // namespace grainlaw::model

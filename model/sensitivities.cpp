@@ -48,17 +48,21 @@ Seeds::Seeds(const ParameterSet& parameters, const Path& path, const std::vector
   }
 }
 
-BasicStartState<Slopes> Seeds::start(const ParameterSet& parameters, const Path& path,
-                                     const Choice& choice) const {
+template <class S>
+BasicStartState<S> Seeds::start(const ParameterSet& parameters, const Path& path,
+                                const Choice& choice) const {
   const auto seeded = [](const auto& slots, const auto& key, double value) {
     const auto slot = slots.find(key);
-    return slot == slots.end() ? Slopes(value) : Slopes(value, slot->second);
+    return slot == slots.end() ? S(value) : S(value, slot->second);
   };
-  return start_of<Slopes>(
+  return start_of<S>(
       parameters, path, choice,
       [&](const Parameter& parameter) { return seeded(by_parameter_, &parameter, parameter.value); },
       [&](const char* key, double value) { return seeded(by_start_, std::string(key), value); });
 }
+
+template BasicStartState<Slopes> Seeds::start(const ParameterSet&, const Path&, const Choice&) const;
+template BasicStartState<FewSlopes> Seeds::start(const ParameterSet&, const Path&, const Choice&) const;
 
 std::vector<std::string> names_of_sensitivities(const ParameterSet& parameters, const Path& path,
                                                 const Choice& choice) {

@@ -24,8 +24,9 @@ class Seeds {
   const std::vector<std::string>& names() const { return names_; }
   /// Natural sizes: |value|, 1 where that is 0.
   const std::vector<double>& scales() const { return scales_; }
-  /// The start, its numbers with their slopes.
-  BasicStartState<Slopes> start(const ParameterSet& parameters, const Path& path, const Choice& choice) const;
+  /// The start, its numbers with their slopes. S is Slopes or FewSlopes.
+  template <class S>
+  BasicStartState<S> start(const ParameterSet& parameters, const Path& path, const Choice& choice) const;
 
  private:
   std::vector<std::string> names_;

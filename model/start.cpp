@@ -241,6 +241,8 @@ template BasicStartState<double> start_of(const ParameterSet&, const Path&, cons
                                           const Reading<double>&, const StartReading<double>&);
 template BasicStartState<Slopes> start_of(const ParameterSet&, const Path&, const Choice&,
                                           const Reading<Slopes>&, const StartReading<Slopes>&);
+template BasicStartState<FewSlopes> start_of(const ParameterSet&, const Path&, const Choice&,
+                                             const Reading<FewSlopes>&, const StartReading<FewSlopes>&);
 
 StartState start_of(const ParameterSet& parameters, const Path& path, const Choice& choice) {
   return start_of<double>(

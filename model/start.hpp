@@ -33,7 +33,7 @@ inline StartState start_of(const ParameterSet& parameters, const Path& path, For
   return start_of(parameters, path, {form, {}});
 }
 
-/// The same for numbers that `read` and `given` make; instantiated for double and Slopes.
+/// The same for numbers that `read` and `given` make; instantiated for double, Slopes and FewSlopes.
 template <class T>
 BasicStartState<T> start_of(const ParameterSet& parameters, const Path& path, const Choice& choice,
                             const Reading<T>& read, const StartReading<T>& given);
