@@ -102,7 +102,8 @@ class CoaxialLaw {
 };
 
 /// Stiffness of shear from the isotropic state of this density, dsigma*_dev/d eps_dev: B (G/B)_ini
-/// (Eqs. 4.11, 4.14) in the coupled forms, P beta_s s_max (Eq. 2.17) in the reduced ones; 0 where unjammed.
+/// (Eqs. 4.11, 4.14) in the coupled forms and, with the jamming density and memory of the point, in `memory`,
+/// P beta_s s_max (Eq. 2.17) in the reduced ones; 0 where unjammed.
 double isotropic_shear_stiffness(const Law& law, const State& point);
 
 }  // namespace grainlaw::model

@@ -45,14 +45,14 @@ typedef struct grainlaw_law grainlaw_law;
  *   grainlaw_settings settings = GRAINLAW_SETTINGS;
  *   grainlaw_axis("d2", settings.axis); */
 typedef struct grainlaw_settings {
-  size_t size;       /* sizeof(grainlaw_settings) of the header that the caller was compiled with */
-  const char* form;  /* "coupled" (Eq. 4.16), "reduced", "reduced_closed", "coupled_3_14"; terms past the
-                        thesis after a plus: "coupled+energy" */
-  double axis[6];    /* its deviator is the axis of shear; its length does not matter. A strain with a
-                        positive projection on it has eps_dev > 0. Always compression positive, without
-                        a factor 2 */
-  double rtol, atol; /* of the integration: error relative to the state's size, and where that is
-                        smaller, absolute. > 0 */
+  size_t size;      /* sizeof(grainlaw_settings) of the header that the caller was compiled with */
+  const char* form; /* "coupled" (Eq. 4.16), "memory", "reduced", "reduced_closed", "coupled_3_14"; terms past
+                       the thesis after a plus: "coupled+energy" */
+  double axis[6];   /* its deviator is the axis of shear; its length does not matter. A strain with a
+                       positive projection on it has eps_dev > 0. Always compression positive, without
+                       a factor 2 */
+  double rtol, atol;        /* of the integration: error relative to the state's size, and where that is
+                               smaller, absolute. > 0 */
   double coaxial_tolerance; /* in [0, 1]: what of an increment's deviator may lie off the axis, over
                                |eps_vol| + sqrt(3 J2) of the increment. It is dropped. At 1 every increment is
                                projected on the axis and none refused */
@@ -90,7 +90,8 @@ int grainlaw_state_version(void);
 /* 0 for NULL. */
 size_t grainlaw_state_length(const grainlaw_law* law);
 /* The entries of version 1: version, nu, P, sigma_dev, F_dev, phi_J, jammed, eps_vol, eps_dev, phi_J_laws,
- * direction, S_I, S_F_I, s_dev_0, F_dev_0, eps_dev_0 (docs/c-interface.md). NULL where there is none. */
+ * direction, S_I, S_F_I, s_dev_0, F_dev_0, eps_dev_0, phi_H, phi_max, phi_H_nu, memory (docs/c-interface.md).
+ * NULL where there is none. */
 const char* grainlaw_state_name(const grainlaw_law* law, size_t index);
 /* -1 where there is no such entry. */
 int grainlaw_state_index(const grainlaw_law* law, const char* name);

@@ -87,5 +87,21 @@ TEST(CoaxialTangent, IsotropicShearIsHowAnIsotropicPointBegins) {
   }
 }
 
+TEST(CoaxialTangent, IsotropicShearOfAPointWithMemory) {
+  ParameterSet set = thesis();
+  set.memory->eps_c.emplace().value = 0.076;
+  set.memory->eps_r.emplace().value = 0.05;
+  const CoaxialLaw law(set, settings_of(d2, Form::memory));
+  CoaxialState state = law.start(Start{0.711, {}, {}, {}, {}, {}}).state;
+  const double K = isotropic_shear_stiffness(make_law(set, {Form::memory, {}}), state.point);
+  EXPECT_GT(K, 0.01);
+  CoaxialLaw::Workspace workspace;
+  Sym6 stress;
+  Matrix6 tangent;
+  ASSERT_FALSE(law.update(state, strain_along(d2, 0, 1e-9), workspace, stress, &tangent).failed());
+  EXPECT_NEAR(state.point.sigma_dev, 1e-9 * K, 1e-6 * 1e-9 * K);
+  EXPECT_NEAR(tangent[35], K, 1e-6 * K);
+}
+
 }  // namespace
 }  // namespace grainlaw::model
