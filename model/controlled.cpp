@@ -129,8 +129,9 @@ class ControlledWalk {
   void note(bool jammed) { events_.push_back({jammed, state_.nu, state_.eps_vol, state_.eps_dev}); }
 
   Status walk_unjammed() {
-    if (by_stress()) return at_limit("the point is unjammed and carries no stress; compress it first");
-    const StrainCourse course(controls_, begin_);
+    if (by_stress() && !freed_ && !free_of_stress())
+      return at_limit("the point is unjammed and carries no stress; compress it first");
+    const StrainCourse course(freed_ ? *freed_ : controls_, begin_);
     if (course.at(1).nu >= 1) return at_limit("the volume fraction must stay below 1");
     const auto with_strain = [&](double t) {
       const State strained = course.at(t);
@@ -157,6 +158,7 @@ class ControlledWalk {
       visit_up_to(std::nextafter(to, 0), with_strain);
     state_ = with_strain(to);
     t_ = to;
+    if (found && freed_) return at_limit("the point jams again, where it should carry no stress");
     if (found) {
       form_.jam(state_, course.ahead(to));
       note(true);
@@ -202,12 +204,31 @@ class ControlledWalk {
   Status lose_contact() {
     form_.unjam(state_);
     note(false);
-    if (!by_stress()) return {};
-    for (const Prescribed& control : controls_)
-      if (control.by_stress() && !(std::abs(control.end) <= smallest_pressure))
-        return at_limit("the point loses its contacts and with them all stress");
-    t_ = 1;  // without stress, as it should be at the end
+    if (by_stress() && !free_of_stress())
+      return at_limit("the point loses its contacts and with them all stress");
     return {};
+  }
+
+  /// From here on without stress, if that is what is prescribed: P or sigma_dev are 0 until the end, and
+  /// s_dev has no value any more. What rests then is the strain that nothing prescribes.
+  bool free_of_stress() {
+    bool any = false;
+    for (const Prescribed& control : controls_) {
+      constexpr double zero = 10 * smallest_pressure;
+      if (!control.by_stress() || control.kind == Prescribed::Kind::s_dev) continue;
+      if (control.end != 0 || !(std::abs(control.wanted(t_)) <= zero)) return false;
+      any = true;
+    }
+    if (!any) return false;
+    const Prescribed volume = Prescribed::strain("eps_vol", 1, 0).from(state_),
+                     shear = Prescribed::strain("eps_dev", 0, 1).from(state_);
+    freed_ = controls_;
+    for (const std::size_t i : {0u, 1u}) {
+      const Prescribed& other = controls_[1 - i];
+      if (controls_[i].by_stress())
+        (*freed_)[i] = (other.by_stress() ? i == 0 : other.is_shear()) ? volume : shear;
+    }
+    return true;
   }
 
   /// Events of a piece, in the order of `causes`.
@@ -248,7 +269,11 @@ class ControlledWalk {
       const double to = next_sample();
       last = !(to <= 1);
       const auto arrival = integrator_.advance(last ? 1 : to, z.data());
-      if (arrival.status.failed()) return arrival.status;
+      if (arrival.status.failed()) {
+        if (!steered.close_to_limit(t_, z.data())) return arrival.status;
+        cause = Cause::limit;
+        return {};
+      }
       t_ = arrival.t;
       state_ = steered.state(z.data());
       if (arrival.event) {
@@ -272,6 +297,7 @@ class ControlledWalk {
   const MaterialPoint::Visit& visit_;
   Integrator& integrator_;
   std::vector<Event>& events_;
+  std::optional<Controls> freed_;  // of stress, once it is gone for good
   std::size_t next_ = 0;
   double t_ = 0;
   bool stopped_ = false;

@@ -15,7 +15,7 @@ template <class T>
 struct StressRates {
   T P, sigma;
   T P_v, P_e, sigma_v, sigma_e;
-  T s_v, s_e;  ///< of s_dev = sigma_dev/P
+  T s, s_v, s_e;  ///< s_dev = sigma_dev/P
 };
 
 struct Prescribed {
@@ -41,7 +41,7 @@ struct Prescribed {
   template <class T>
   T value(const T& nu, const T& eps_vol, const T& eps_dev, const StressRates<T>& stress) const {
     if (kind == Kind::nu) return nu;
-    if (kind == Kind::s_dev) return stress.sigma / stress.P;
+    if (kind == Kind::s_dev) return stress.s;
     return weight[0] * eps_vol + weight[1] * eps_dev + weight[2] * stress.P + weight[3] * stress.sigma;
   }
   /// Its change per d ln nu and per d eps_dev.

@@ -66,16 +66,17 @@ class Steered {
             eps_dev = begin_.eps_dev + z[Form::size + 1];
     if (!form_rates(form_, begin_, begin_.direction, nu, eps_dev, z, rates)) return false;
     std::array<std::array<T, 2>, 2> slope;
-    std::array<T, 2> a;
+    std::array<T, 2> a, size_of_a;
     for (std::size_t i = 0; i < 2; ++i) {
       const Prescribed& control = controls_[i];
       slope[i] = control.slopes(nu, rates.stress);
-      a[i] = control.change() + pull * (control.begin + control.change() * t -
-                                        control.value(nu, eps_vol, eps_dev, rates.stress));
+      const T value = control.value(nu, eps_vol, eps_dev, rates.stress);
+      a[i] = control.change() + pull * (control.begin + control.change() * t - value);
+      size_of_a[i] = abs(a[i]) + pull * (rounding / negligible) * (abs(value) + std::abs(control.begin));
     }
     strain.determinant = slope[0][0] * slope[1][1] - slope[0][1] * slope[1][0];
     strain.numerator = slope[0][0] * a[1] - slope[1][0] * a[0];
-    strain.terms = abs(slope[0][0] * a[1]) + abs(slope[1][0] * a[0]);
+    strain.terms = abs(slope[0][0]) * size_of_a[1] + abs(slope[1][0]) * size_of_a[0];
     if (q_ == 0) {
       strain.determinant = slope[leading_][0];
       strain.v = a[leading_] / strain.determinant;
@@ -114,6 +115,13 @@ class Steered {
     return strain ? 1 - (strain->v * strain->v + strain->e * strain->e) / (most_strain * most_strain) : -1;
   }
 
+  /// Whether the system is much closer to singular than where the piece began: steps become too small there.
+  bool close_to_limit(double t, const double* z) const {
+    constexpr double much = 0.01;
+    const auto strain = strain_at(t, z);
+    return !strain || std::abs(strain->determinant) < much * determinant_;
+  }
+
   /// Takes the direction of shear that agrees with itself at t. Both may, beyond s_max, where shear on lowers
   /// the stress as unloading does: then it is the present one, and without one it is unloading. False where
   /// none does.
@@ -139,8 +147,9 @@ class Steered {
  private:
   /// Errors of the prescribed quantities decay with exp(-pull t).
   static constexpr double pull = 100;
-  /// A rate of shear this small against what cancels in it is rounding.
-  static constexpr double negligible = 1e-12;
+  /// A rate of shear this small against what cancels in it is rounding, as are differences of values this
+  /// small against them.
+  static constexpr double negligible = 1e-12, rounding = 1e-15;
 
   bool prescribes_shear() const { return controls_[0].is_shear() || controls_[1].is_shear(); }
 
@@ -176,6 +185,7 @@ class Steered {
     const auto strain = strain_at(t, z.data());
     if (!strain || strain->determinant == 0 || !(distance_to_limit(t, z.data()) > 0)) return false;
     side_ = sign(strain->determinant);
+    determinant_ = std::abs(strain->determinant);
     return true;
   }
 
@@ -214,7 +224,7 @@ class Steered {
   State begin_;
   const Controls& controls_;
   double q_ = 0;
-  double side_ = 1;  // sign of the determinant
+  double side_ = 1, determinant_ = 1;  // where the piece begins: its sign, and its size
   std::size_t leading_ = 0;
 };
 

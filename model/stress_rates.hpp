@@ -32,15 +32,22 @@ StressRates<T> stress_of_variables(const T* y, const FormRates<T, N>& rates) {
           rates.e[0],
           rates.v[1],
           rates.e[1],
+          s,
           (rates.v[1] - s * rates.v[0]) / y[0],
           (rates.e[1] - s * rates.e[0]) / y[0]};
 }
 
-/// Where P* is that of Eq. 2.14 and s_dev changes by s_v, s_e.
+/// Where P* is that of Eq. 2.14 and s_dev changes by s_v, s_e. Below its nu_c, where the law has no pressure,
+/// the formula goes on, so that an integration may look a little beyond.
 template <class T>
 StressRates<T> stress_of_ratio(const Laws& laws, const T& nu, const T& s, const T& s_v, const T& s_e) {
-  const T P = pressure(laws.pressure, nu), P_v = pressure_slope(laws.pressure, nu);
-  return {P, s * P, P_v, T(0.0), s * P_v + P * s_v, P * s_e, s_v, s_e};
+  using std::log;
+  const PressureCurve& p = laws.pressure;
+  const T e = log(nu / p.nu_c), C = coordination(p.contacts, at_least_isostatic(p.contacts, nu));
+  const T dC = nu * coordination_slope(p.contacts, nu);
+  const T P = p.p0 * nu * C / p.nu_c * e * (1 - p.gamma_p * e);
+  const T P_v = p.p0 * nu / p.nu_c * ((C + dC) * e * (1 - p.gamma_p * e) + C * (1 - 2 * p.gamma_p * e));
+  return {P, s * P, P_v, T(0.0), s * P_v + P * s_v, P * s_e, s, s_v, s_e};
 }
 
 /// Eq. 2.17 at the current nu: s = q s_max - (q s_max - s_0) exp(-beta_s E), E = q (eps_dev - eps_dev_0).

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <boost/numeric/odeint.hpp>
+#include <map>
+#include <random>
 
 #include "grainlaw/model/steered.hpp"
 #include "walks.hpp"
@@ -453,6 +455,63 @@ TEST(Controlled, ATinySegmentAndALongOneAreFollowed) {
   const Prediction p = after_711(R"({"mode": "constant_p", "amount": 50})", Form::coupled, 3);
   ASSERT_EQ(p.status.code, Status::Code::ok) << p.status.message;
   EXPECT_NEAR(last(p, "P"), at(p, "P", 0), to_tolerance);
+}
+
+TEST(Controlled, RandomPathsEndWhereTheySay) {
+  std::mt19937 random(7);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const std::array<const char*, 6> columns{"nu", "eps_vol", "eps_dev", "P", "sigma_dev", "s_dev"};
+  const std::array<std::array<double, 2>, 6> ranges{
+      {{0.66, 0.82}, {-0.05, 0.1}, {-0.3, 0.3}, {0, 0.06}, {-0.008, 0.008}, {-0.2, 0.2}}};
+  std::map<Status::Code, int> ends;
+  for (int path = 0; path < 400; ++path) {
+    std::string segments;
+    std::vector<std::array<std::size_t, 2>> pairs;
+    for (int segment = 0; segment < 4; ++segment) {
+      const auto a = static_cast<std::size_t>(uniform(0, 6)), b = static_cast<std::size_t>(uniform(0, 6));
+      if (a == b || a + b == 1) continue;  // nu and eps_vol
+      const auto target = [&](std::size_t i, bool may_stay) {
+        const bool stays = may_stay && uniform(0, 1) < 0.3;
+        if (stays) return std::string("\"start\"");
+        if (i >= 3 && uniform(0, 1) < 0.2) return std::string("0");
+        return to_text(uniform(ranges[i][0], ranges[i][1]));
+      };
+      segments += std::string(segments.empty() ? "" : ",") + R"({"mode": "d2", "controls": {")" + columns[a] +
+                  "\": " + target(a, false) + ", \"" + columns[b] + "\": " + target(b, true) + "}}";
+      pairs.push_back({a, b});
+    }
+    if (pairs.empty()) continue;
+    const std::string text =
+        R"({"start": {"nu": )" + to_text(uniform(0.66, 0.8)) + R"(}, "segments": [)" + segments + "]}";
+    for (const Form form : forms) {
+      SCOPED_TRACE(name_of(form) + " " + text);
+      const Prediction p = predict(thesis(), path_of(text), {form, 1e-8, 1e-12, 10});
+      ++ends[p.status.code];
+      EXPECT_FALSE(p.status.failed()) << p.status.message;
+      if (p.status.failed()) continue;
+      EXPECT_EQ(p.status.message.empty(), p.status.code == Status::Code::ok);
+      for (std::size_t i = 0; i < p.record.rows(); ++i) {
+        for (const char* column : {"nu", "eps_dev", "P", "sigma_dev", "F_dev"})
+          ASSERT_TRUE(std::isfinite(at(p, column, i))) << column;
+        ASSERT_GE(at(p, "P", i), 0);
+        ASSERT_LT(at(p, "nu", i), 1 + 1e-6);
+      }
+      // Segments that came to their end followed both quantities.
+      const auto walked = static_cast<std::size_t>(last(p, "segment"));
+      const std::size_t whole = p.status.code == Status::Code::limit ? walked : walked + 1;
+      for (std::size_t segment = 0; segment < whole; ++segment)
+        for (const std::size_t c : pairs[segment]) {
+          const double begin = at(p, columns[c], 10 * segment), end = at(p, columns[c], 10 * segment + 10);
+          for (std::size_t i = 1; i < 10 && std::isfinite(begin) && std::isfinite(end); ++i)
+            EXPECT_NEAR(at(p, columns[c], 10 * segment + i), begin + (end - begin) * double(i) / 10, 1e-7)
+                << columns[c] << " in row " << 10 * segment + i;
+        }
+    }
+  }
+  for (const auto code : {Status::Code::ok, Status::Code::limit, Status::Code::unjammed})
+    EXPECT_GT(ends[code], 10);
 }
 
 /// Jacobian of the rates along a path under control against differences.
