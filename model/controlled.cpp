@@ -177,7 +177,7 @@ class ControlledWalk {
     switch (cause) {
       case Cause::limit:  // also where Eq. 2.14 ends
         if (carries_nothing()) return lose_contact();
-        return at_limit("no strain follows the path further");
+        return at_limit(why_);
       case Cause::no_pressure:
       case Cause::no_contacts:
         return lose_contact();
@@ -270,7 +270,9 @@ class ControlledWalk {
       last = !(to <= 1);
       const auto arrival = integrator_.advance(last ? 1 : to, z.data());
       if (arrival.status.failed()) {
-        if (!steered.close_to_limit(t_, z.data())) return arrival.status;
+        if (!by_stress()) return arrival.status;
+        // Steps shrink without end where strains grow so: at P* = 0 or s_dev = 0 over 0.
+        why_ = "the strain that follows the path has a singularity (" + arrival.status.message + ")";
         cause = Cause::limit;
         return {};
       }
@@ -297,6 +299,7 @@ class ControlledWalk {
   const MaterialPoint::Visit& visit_;
   Integrator& integrator_;
   std::vector<Event>& events_;
+  std::string why_ = "no strain follows the path further";
   std::optional<Controls> freed_;  // of stress, once it is gone for good
   std::size_t next_ = 0;
   double t_ = 0;

@@ -115,13 +115,6 @@ class Steered {
     return strain ? 1 - (strain->v * strain->v + strain->e * strain->e) / (most_strain * most_strain) : -1;
   }
 
-  /// Whether the system is much closer to singular than where the piece began: steps become too small there.
-  bool close_to_limit(double t, const double* z) const {
-    constexpr double much = 0.01;
-    const auto strain = strain_at(t, z);
-    return !strain || std::abs(strain->determinant) < much * determinant_;
-  }
-
   /// Takes the direction of shear that agrees with itself at t. Both may, beyond s_max, where shear on lowers
   /// the stress as unloading does: then it is the present one, and without one it is unloading. False where
   /// none does.
@@ -185,7 +178,6 @@ class Steered {
     const auto strain = strain_at(t, z.data());
     if (!strain || strain->determinant == 0 || !(distance_to_limit(t, z.data()) > 0)) return false;
     side_ = sign(strain->determinant);
-    determinant_ = std::abs(strain->determinant);
     return true;
   }
 
@@ -224,7 +216,7 @@ class Steered {
   State begin_;
   const Controls& controls_;
   double q_ = 0;
-  double side_ = 1, determinant_ = 1;  // where the piece begins: its sign, and its size
+  double side_ = 1;  // sign of the determinant
   std::size_t leading_ = 0;
 };
 

@@ -457,6 +457,17 @@ TEST(Controlled, ATinySegmentAndALongOneAreFollowed) {
   EXPECT_NEAR(last(p, "P"), at(p, "P", 0), to_tolerance);
 }
 
+TEST(Controlled, PressureThatFallsAwayUnderShearStressIsALimit) {
+  // eps_dev and sigma_dev go back together; volume must make up for fabric that goes too, until P is gone.
+  const Prediction p = walk(R"({"start": {"nu": 0.7670146141734411}, "segments": [
+      {"mode": "d2", "controls": {"eps_dev": 0.21115723644311885, "nu": 0.8014708498599663}},
+      {"mode": "d2", "controls": {"sigma_dev": -0.00594799462985433, "eps_dev": 0.14855895869668012}}]})",
+                            Form::coupled, 10);
+  EXPECT_EQ(p.status.code, Status::Code::limit) << p.status.message;
+  EXPECT_THAT(p.status.message, HasSubstr("segments[1]: "));
+  EXPECT_LT(last(p, "P"), 0.01);
+}
+
 TEST(Controlled, RandomPathsEndWhereTheySay) {
   std::mt19937 random(7);
   const auto uniform = [&](double low, double high) {
@@ -466,7 +477,7 @@ TEST(Controlled, RandomPathsEndWhereTheySay) {
   const std::array<std::array<double, 2>, 6> ranges{
       {{0.66, 0.82}, {-0.05, 0.1}, {-0.3, 0.3}, {0, 0.06}, {-0.008, 0.008}, {-0.2, 0.2}}};
   std::map<Status::Code, int> ends;
-  for (int path = 0; path < 400; ++path) {
+  for (int path = 0; path < 300; ++path) {
     std::string segments;
     std::vector<std::array<std::size_t, 2>> pairs;
     for (int segment = 0; segment < 4; ++segment) {

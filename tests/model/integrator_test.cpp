@@ -135,6 +135,31 @@ TEST(Integrator, IsReusedForAnotherProblem) {
   EXPECT_NEAR(z, std::cos(2), 1e-9);
 }
 
+TEST(Integrator, SaysWhichOfSeveralEventsCameFirst) {
+  System system;
+  system.rate = [](double, const double*, double* dy) {
+    dy[0] = 1;
+    return true;
+  };
+  system.jacobian = [](double, const double*, double* J) {
+    J[0] = 0;
+    return true;
+  };
+  system.others = {[](double, const double* y) { return y[0] - 0.8; },
+                   [](double, const double* y) { return 0.3 - y[0]; }};
+  system.event = [](double, const double* y) { return y[0] - 0.5; };
+  Integrator integrator(1, {1e-10, 1e-12});
+  double y = 0;
+  ASSERT_FALSE(integrator.start(system, 0, 1, &y).failed());
+  for (const auto& [which, place] : {std::pair{1u, 0.3}, std::pair{2u, 0.5}, std::pair{0u, 0.8}}) {
+    const auto arrival = integrator.advance(1, &y);
+    EXPECT_TRUE(arrival.event);
+    EXPECT_EQ(arrival.which, which);
+    EXPECT_NEAR(y, place, 1e-12);
+  }
+  EXPECT_FALSE(integrator.advance(1, &y).event);
+}
+
 TEST(Integrator, StopsWhereAnEventCrossesZero) {
   System fall;
   fall.rate = [](double t, const double*, double* dy) {
