@@ -347,14 +347,7 @@ class ControlledWalk {
 };
 
 int variables_of(const Law& law) {
-  return std::visit(
-      []<class Form>(const Form&) {
-        if constexpr (std::is_same_v<Form, Memory>)
-          return 1;  // not used, see walk()
-        else
-          return static_cast<int>(Steered<Form>::size);
-      },
-      law);
+  return std::visit([]<class Form>(const Form&) { return static_cast<int>(Steered<Form>::size); }, law);
 }
 
 }  // namespace
@@ -372,15 +365,10 @@ Ended Controlled::walk(const Controls& controls, const std::optional<StopConditi
   }
   std::vector<Event> events;
   Ended ended = std::visit(
-      [&]<class Form>(const Form& form) -> Ended {
-        if constexpr (std::is_same_v<Form, Memory>)
-          return {{Status::Code::failed, "the form memory follows strains only, neither stress nor stops"},
-                  0,
-                  false};
-        else
-          return ControlledWalk<Form>(form, point_.law(), state, controls, stop, samples, visit, integrator_,
-                                      events)
-              .run();
+      [&]<class Form>(const Form& form) {
+        return ControlledWalk<Form>(form, point_.law(), state, controls, stop, samples, visit, integrator_,
+                                    events)
+            .run();
       },
       point_.law());
   if (ended.status.failed()) {
