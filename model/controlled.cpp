@@ -95,7 +95,7 @@ class ControlledWalk {
         return end(failed("contact is lost and found, or shear reversed, again and again without end"));
       if (stop_ && stop_->excess(law_, state_) >= 0) stopped_ = true;
       if (stopped_ || t_ >= 1) break;
-      if (Status status = state_.jammed ? walk_jammed() : walk_unjammed();
+      if (Status status = state_.jammed || goes_on_unjammed ? walk_piece() : walk_unjammed();
           status.failed() || status.code == Status::Code::limit)
         return end(std::move(status));
     }
@@ -105,7 +105,10 @@ class ControlledWalk {
 
  private:
   /// What may end a piece, beside its end.
-  enum class Cause { reached, no_pressure, no_contacts, limit, reversal, shear, stop };
+  enum class Cause { reached, no_pressure, no_contacts, limit, reversal, shear, volume, stop };
+  /// Whether the form integrates without contacts as well, and finds both events itself.
+  static constexpr bool goes_on_unjammed = requires { Form::goes_on_unjammed; };
+  static constexpr int most_turns = 100;  // of the volume: beyond them it trembles
 
   bool by_stress() const { return controls_[0].by_stress() || controls_[1].by_stress(); }
 
@@ -128,10 +131,19 @@ class ControlledWalk {
 
   void note(bool jammed) { events_.push_back({jammed, state_.nu, state_.eps_vol, state_.eps_dev}); }
 
+  bool may_carry_nothing() { return !by_stress() || freed_ || free_of_stress(); }
+  static constexpr const char* unjammed = "the point is unjammed and carries no stress; compress it first";
+  const Controls& followed() const { return freed_ ? *freed_ : controls_; }
+
   Status walk_unjammed() {
-    if (by_stress() && !freed_ && !free_of_stress())
-      return at_limit("the point is unjammed and carries no stress; compress it first");
-    const StrainCourse course(freed_ ? *freed_ : controls_, begin_);
+    if constexpr (goes_on_unjammed)
+      return {};
+    else
+      return walk_to_contacts();
+  }
+  Status walk_to_contacts() requires(!goes_on_unjammed) {
+    if (!may_carry_nothing()) return at_limit(unjammed);
+    const StrainCourse course(followed(), begin_);
     if (course.at(1).nu >= 1) return at_limit("the volume fraction must stay below 1");
     const auto with_strain = [&](double t) {
       const State strained = course.at(t);
@@ -166,9 +178,10 @@ class ControlledWalk {
     return {};
   }
 
-  Status walk_jammed() {
+  Status walk_piece() {
+    if (!state_.jammed && !may_carry_nothing()) return at_limit(unjammed);
     if (auto reason = objection(law_, Stretch{state_.nu, 0, 1})) return failed(*reason);
-    Steered<Form> steered(form_, state_, controls_);
+    Steered<Form> steered(form_, state_, followed());
     if (!steered.find_direction(t_))
       return at_limit("no strain in either direction follows the path further");
     state_ = steered.begin();
@@ -180,7 +193,10 @@ class ControlledWalk {
         return at_limit(why_);
       case Cause::no_pressure:
       case Cause::no_contacts:
-        return lose_contact();
+        return state_.jammed ? lose_contact() : find_contact(steered);
+      case Cause::volume:
+        ++turns_;
+        break;
       case Cause::stop:
         stopped_ = true;
         break;
@@ -197,6 +213,7 @@ class ControlledWalk {
   /// The end of a segment may be where the contacts are lost: no event is passed there.
   bool carries_nothing() const {
     constexpr double rounding = 2e-12;
+    if (!state_.jammed) return false;
     return state_.nu <= form_.unjamming_density() * (1 + rounding) ||
            (by_stress() && state_.P <= smallest_pressure);
   }
@@ -206,6 +223,16 @@ class ControlledWalk {
     note(false);
     if (by_stress() && !free_of_stress())
       return at_limit("the point loses its contacts and with them all stress");
+    return {};
+  }
+
+  /// A form that goes on unjammed has come to its contacts.
+  Status find_contact([[maybe_unused]] const Steered<Form>& steered) {
+    if constexpr (goes_on_unjammed) {
+      if (freed_) return at_limit("the point jams again, where it should carry no stress");
+      form_.jam(state_, ahead_);
+      note(true);
+    }
     return {};
   }
 
@@ -239,12 +266,22 @@ class ControlledWalk {
       events.push_back(std::move(event));
     };
     constexpr std::size_t x = Form::size;
-    add(Cause::no_contacts, [room = std::log(steered.begin().nu / form_.unjamming_density())](
-                                double, const double* z) { return room + z[x]; });
+    if constexpr (!goes_on_unjammed)
+      add(Cause::no_contacts, [room = std::log(steered.begin().nu / form_.unjamming_density())](
+                                  double, const double* z) { return room + z[x]; });
     add(Cause::limit,
         [room = -std::log(steered.begin().nu)](double, const double* z) { return room - z[x]; });
     if constexpr (std::is_base_of_v<Coupled, Form>)
       add(Cause::no_pressure, [](double, const double* z) { return z[0] - smallest_pressure; });
+    if constexpr (goes_on_unjammed) {
+      add(Cause::no_pressure, [this, &steered](double, const double* z) {
+        const Direction& direction = steered.begin().direction;
+        const double nu = steered.begin().nu * std::exp(z[x]);
+        return form_.distance_to_event(form_.coefficients(nu, direction), direction, z);
+      });
+      if (steered.may_turn() && turns_ < most_turns)
+        add(Cause::volume, [&steered](double t, const double* z) { return steered.volume_rate(t, z); });
+    }
     add(Cause::limit, [&steered](double t, const double* z) { return steered.distance_to_limit(t, z); });
     if (steered.may_reverse())
       add(Cause::reversal, [&steered](double t, const double* z) { return steered.shear_ahead(t, z); });
@@ -280,6 +317,7 @@ class ControlledWalk {
       state_ = steered.state(z.data());
       if (arrival.event) {
         cause = causes[arrival.which];
+        ahead_ = steered.ahead(t_, z.data());
         return {};
       }
       if (!last) visit_(next_++, state_);
@@ -301,20 +339,15 @@ class ControlledWalk {
   std::vector<Event>& events_;
   std::string why_ = "no strain follows the path further";
   std::optional<Controls> freed_;  // of stress, once it is gone for good
+  Stretch ahead_;                  // rates where the last piece ended
+  int turns_ = 0;
   std::size_t next_ = 0;
   double t_ = 0;
   bool stopped_ = false;
 };
 
 int variables_of(const Law& law) {
-  return std::visit(
-      []<class Form>(const Form&) {
-        if constexpr (std::is_same_v<Form, Memory>)
-          return 1;  // not used, see walk()
-        else
-          return static_cast<int>(Steered<Form>::size);
-      },
-      law);
+  return std::visit([]<class Form>(const Form&) { return static_cast<int>(Steered<Form>::size); }, law);
 }
 
 }  // namespace
@@ -332,15 +365,10 @@ Ended Controlled::walk(const Controls& controls, const std::optional<StopConditi
   }
   std::vector<Event> events;
   Ended ended = std::visit(
-      [&]<class Form>(const Form& form) -> Ended {
-        if constexpr (std::is_same_v<Form, Memory>)
-          return {{Status::Code::failed, "the form memory follows strains only, neither stress nor stops"},
-                  0,
-                  false};
-        else
-          return ControlledWalk<Form>(form, point_.law(), state, controls, stop, samples, visit, integrator_,
-                                      events)
-              .run();
+      [&]<class Form>(const Form& form) {
+        return ControlledWalk<Form>(form, point_.law(), state, controls, stop, samples, visit, integrator_,
+                                    events)
+            .run();
       },
       point_.law());
   if (ended.status.failed()) {

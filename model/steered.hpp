@@ -99,6 +99,23 @@ class Steered {
     return true;
   }
 
+  /// v, whose sign decides what a history takes up.
+  double volume_rate(double t, const double* z) const {
+    const auto strain = strain_at(t, z);
+    return strain ? strain->v : 0;
+  }
+  Stretch ahead(double t, const double* z) const {
+    const auto strain = strain_at(t, z);
+    return {begin_.nu * std::exp(z[Form::size]), strain ? strain->v : 0, strain ? strain->e : 0};
+  }
+  /// Whether the sign of v follows from the solution.
+  bool may_turn() const {
+    const auto is_volume = [](const Prescribed& c) {
+      return c.kind == Prescribed::Kind::nu || (!c.by_stress() && c.weight[1] == 0);
+    };
+    return !is_volume(controls_[0]) && !is_volume(controls_[1]);
+  }
+
   /// q e, positive while the direction of shear lasts.
   double shear_ahead(double t, const double* z) const {
     const auto strain = strain_at(t, z);
@@ -152,7 +169,8 @@ class Steered {
     FormRates<T, Form::size> rates;
     // Beyond a singular system the solution would go back along another branch.
     if (!solve(t, z, strain, rates) || !(strain.determinant * side_ > 0)) return false;
-    for (std::size_t i = 0; i < Form::size; ++i) dzdt[i] = rates.v[i] * strain.v + rates.e[i] * strain.e;
+    for (std::size_t i = 0; i < Form::size; ++i)
+      dzdt[i] = (strain.v < 0 ? rates.back[i] : rates.v[i]) * strain.v + rates.e[i] * strain.e;
     dzdt[Form::size] = strain.v;
     dzdt[Form::size + 1] = strain.e;
     return true;
@@ -173,6 +191,7 @@ class Steered {
       begin_.direction.q = 0;  // shear after a stretch without begins a new direction
     else if (q != begin_.direction.q)
       form_.begin_direction(begin_, q);
+    if constexpr (requires { Form::goes_on_unjammed; }) form_.prepare(begin_);
     lead(t);
     const auto z = variables();
     const auto strain = strain_at(t, z.data());

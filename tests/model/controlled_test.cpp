@@ -18,7 +18,18 @@ namespace {
 using testing::HasSubstr;
 
 constexpr Form forms[] = {Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14};
-bool is_coupled(Form form) { return form == Form::coupled || form == Form::coupled_3_14; }
+constexpr Form all_forms[] = {Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14,
+                              Form::memory};
+ParameterSet set_of(Form form) {
+  ParameterSet set = thesis();
+  if (form != Form::memory) return set;
+  set.memory->eps_c.emplace().value = 0.076;
+  set.memory->eps_r.emplace().value = 0.0123;
+  return set;
+}
+bool is_coupled(Form form) {
+  return form == Form::coupled || form == Form::coupled_3_14 || form == Form::memory;
+}
 /// Beside the state: near jamming the reduced forms' P is as sharp as ln nu is.
 constexpr double to_tolerance = 1e-10;
 
@@ -26,7 +37,7 @@ std::string from_711(const std::string& segments) {
   return R"({"start": {"nu": 0.711}, "segments": [)" + segments + "]}";
 }
 Prediction after_711(const std::string& segments, Form form, int rows = 20) {
-  return walk(from_711(segments), form, rows);
+  return walk(from_711(segments), form, rows, set_of(form));
 }
 const std::string undrained = R"({"mode": "d2", "controls": {"eps_vol": "start", "s_dev": )";
 
@@ -41,7 +52,7 @@ std::vector<std::size_t> rows_of(const Prediction& p, double segment) {
 double at(const Prediction& p, const char* column, std::size_t row) { return p.record[column][row]; }
 
 TEST(Controlled, UndrainedShearIsD2ToTheStrainItFinds) {
-  for (const Form form : forms) {
+  for (const Form form : all_forms) {
     const Prediction to_stress = after_711(undrained + "0.15}}," + undrained + "-0.12}}", form, 1);
     ASSERT_EQ(to_stress.status.code, Status::Code::ok) << to_stress.status.message;
     EXPECT_NEAR(at(to_stress, "s_dev", 1), 0.15, to_tolerance);
@@ -83,7 +94,7 @@ TEST(Controlled, EveryPairOfQuantitiesIsFollowed) {
   // Targets that a walk by strains reaches: every pair finds nearly the same strains.
   const std::string begin = R"({"mode": "d3", "amount": 0.01})";
   const char* columns[] = {"nu", "eps_vol", "eps_dev", "P", "sigma_dev", "s_dev"};
-  for (const Form form : forms) {
+  for (const Form form : all_forms) {
     const Prediction way =
         after_711(begin + R"(, {"mode": "d3", "controls": {"eps_vol": 0.012, "eps_dev": 0.06}},
                      {"mode": "d3", "controls": {"eps_vol": 0.004, "eps_dev": 0.052}})",
@@ -209,7 +220,7 @@ TEST(Controlled, TheStrainsOfAConstantPressurePathGiveItsStresses) {
 }
 
 TEST(Controlled, DrainedTriaxialShearKeepsItsSides) {
-  for (const Form form : forms) {
+  for (const Form form : all_forms) {
     const Prediction p =
         after_711(R"({"mode": "triaxial", "amount": 0.1}, {"mode": "triaxial", "amount": -0.05})", form);
     ASSERT_EQ(p.status.code, Status::Code::ok) << p.status.message;
@@ -432,7 +443,7 @@ TEST(Controlled, BeyondSaturationUnloadingIsStable) {
 }
 
 TEST(Controlled, TwoStrainsAreTheStrainDrivenWalk) {
-  for (const Form form : forms) {
+  for (const Form form : all_forms) {
     const Prediction two = after_711(
         R"({"mode": "uni", "controls": {"eps_vol": 0.05, "eps_dev": 0.05}}, {"mode": "d3", "controls": {"eps_vol": "start", "eps_dev": -0.05}})",
         form);
@@ -496,9 +507,9 @@ TEST(Controlled, RandomPathsEndWhereTheySay) {
     if (pairs.empty()) continue;
     const std::string text =
         R"({"start": {"nu": )" + to_text(uniform(0.66, 0.8)) + R"(}, "segments": [)" + segments + "]}";
-    for (const Form form : forms) {
+    for (const Form form : all_forms) {
       SCOPED_TRACE(name_of(form) + " " + text);
-      const Prediction p = predict(thesis(), path_of(text), {form, 1e-8, 1e-12, 10});
+      const Prediction p = predict(set_of(form), path_of(text), {form, 1e-8, 1e-12, 10});
       ++ends[p.status.code];
       EXPECT_FALSE(p.status.failed()) << p.status.message;
       if (p.status.failed()) continue;
