@@ -163,7 +163,9 @@ TEST_F(CInterface, BadLaws) {
   EXPECT_THAT(message, HasSubstr("no.json: no such file"));
   EXPECT_EQ(grainlaw_law_from_file(nullptr, &settings, &none, message, 8), GRAINLAW_BAD_INPUT);
   EXPECT_STREQ(message, "file: m");  // a short buffer cuts
-  EXPECT_EQ(grainlaw_context_create(nullptr, &context), GRAINLAW_BAD_ARGUMENT);
+  grainlaw_context* nobody = context;
+  EXPECT_EQ(grainlaw_context_create(nullptr, &nobody), GRAINLAW_BAD_ARGUMENT);
+  EXPECT_EQ(nobody, nullptr);
   EXPECT_EQ(grainlaw_context_create(law, nullptr), GRAINLAW_BAD_ARGUMENT);
   double axis[6];
   EXPECT_EQ(grainlaw_axis("d4", axis), GRAINLAW_BAD_ARGUMENT);
