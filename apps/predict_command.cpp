@@ -189,7 +189,6 @@ int run(const Arguments& arguments) {
   const model::Prediction prediction =
       predict_along(parameters, followed, options, !arguments.rows.empty(), arguments.sensitivities);
   Terminal terminal;
-  echo_start(terminal, prediction);
   model::Status status = prediction.status;
   Record record = prediction.record;
   const bool ended = !status.failed() && status.code != model::Status::Code::limit;
@@ -201,6 +200,7 @@ int run(const Arguments& arguments) {
   // A limit leaves the rows up to it; of an envelope there is nothing without its state.
   if (!status.failed() && (ended || !probe))
     write_table(arguments, arguments.si ? in_kPa(record, parameters.material.stress_unit_kPa()) : record);
+  echo_start(terminal, prediction);
   if (!status.failed() && status.code != model::Status::Code::limit) return all_well;
   terminal.warn(arguments.path + ": " + status.message);
   return failed;

@@ -30,6 +30,13 @@ bool reverses(const TestRecord& test) {
          std::any_of(test.legs.begin(), test.legs.end(), [&](const Leg& leg) { return shears(leg, -1); });
 }
 
+/// Whether the tests determine it: not where the fit failed, where it rests on a bound, or where its error is
+/// as large as itself.
+bool is_told(const model::Parameter& parameter) {
+  return parameter.source == "fit" && parameter.stderr_ && *parameter.stderr_ < 0.5 * parameter.value &&
+         parameter.note.find("bound") == std::string::npos;
+}
+
 }  // namespace
 
 void add_memory_strains(const std::filesystem::path& dir, const RecordFolder& folder,
@@ -50,8 +57,9 @@ void add_memory_strains(const std::filesystem::path& dir, const RecordFolder& fo
       assumed(usual_eps_r, any_reverses ? "the D2 tests do not tell" : "no D2 test is reversed");
   try {
     const PolishOutput fitted = polish(dir, parameters, options);
-    const std::string exit = fitted.account.value("exit", "failed");
-    if (!exit.starts_with("failed")) parameters.memory = fitted.parameters.memory;
+    const auto& told = *fitted.parameters.memory;
+    if (is_told(*told.eps_c)) parameters.memory->eps_c = told.eps_c;
+    if (is_told(*told.eps_r)) parameters.memory->eps_r = told.eps_r;
   } catch (const Error&) {
     // No D2 test, or none that the law can follow: what is assumed says so.
   }

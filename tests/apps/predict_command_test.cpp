@@ -165,7 +165,7 @@ TEST_F(Predict, EnvelopeOfTheEndOfAPath) {
               {"--directions: goes with --envelope"}));
   EXPECT_TRUE(
       refuses(run({"predict", "data/thesis/parameters.json", "data/paths/d3.json", "--envelope", "2"}),
-              {"--envelope: must be > 0 and <= 0.1"}));
+              {"--envelope: must be a number > 0 and <= 0.1"}));
 }
 
 TEST_F(Predict, EveryThesisSetPredicts) {

@@ -80,7 +80,8 @@ Outcome Running::wait() {
 }
 
 void Program::SetUp() {
-  ::unsetenv("GRAINLAW_HOME");  // a program that the entry script did not start, even where that runs the tests
+  ::unsetenv(
+      "GRAINLAW_HOME");  // a program that the entry script did not start, even where that runs the tests
   folder = fs::temp_directory_path() / ("grainlaw-apps-" + std::to_string(::getpid()));
   fs::remove_all(folder);
   fs::create_directories(folder);

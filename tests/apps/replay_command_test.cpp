@@ -57,7 +57,8 @@ TEST_F(Replay, BadInput) {
     write("failed.json", json.dump());
     return refuses(run({"replay", "failed.json"}), parts);
   };
-  EXPECT_TRUE(refused("/format", "grainlaw-replay-2", {"failed.json: format: must be one of grainlaw-replay-1"}));
+  EXPECT_TRUE(
+      refused("/format", "grainlaw-replay-2", {"failed.json: format: must be one of grainlaw-replay-1"}));
   EXPECT_TRUE(refused("/form", "couple", {"failed.json: form: must be one of"}));
   EXPECT_TRUE(refused("/form", "coupled+energy", {"moduli", "a_F"}));
   EXPECT_TRUE(refused("/axis", Json{1, 1, 1, 0, 0, 0}, {"axis: must have a deviator"}));
