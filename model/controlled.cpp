@@ -91,8 +91,7 @@ class ControlledWalk {
 
   Ended run() {
     for (int phase = 0;; ++phase) {
-      if (phase == most_phases)
-        return end(failed("contact is lost and found, or shear reversed, again and again without end"));
+      if (phase == most_phases) return end(too_often());
       if (stop_ && stop_->excess(law_, state_) >= 0) stopped_ = true;
       if (stopped_ || t_ >= 1) break;
       if (Status status = state_.jammed || goes_on_unjammed ? walk_piece() : walk_unjammed();
@@ -111,6 +110,12 @@ class ControlledWalk {
   static constexpr int most_turns = 100;  // of the volume: beyond them it trembles
 
   bool by_stress() const { return controls_[0].by_stress() || controls_[1].by_stress(); }
+
+  /// Under stress neither direction of shear lasts then: there is none.
+  Status too_often() const {
+    const char* why = "contact is lost and found, or shear reversed, again and again without end";
+    return by_stress() ? at_limit(why) : failed(why);
+  }
 
   Ended end(Status status) const { return {std::move(status), t_, stopped_}; }
 
