@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "grainlaw/calibrate/campaign.hpp"
 #include "grainlaw/dem/scene.hpp"
@@ -56,9 +57,10 @@ TEST(Examples, CampaignsKeepUniAndReversalsForPredictions) {
     for (const auto& test : campaign.tests) {
       const auto& segments = test.path.segments;
       const bool uni = segments.front().mode == Mode::uni;
-      const auto sheared = std::count_if(segments.begin(), segments.end(),
-                                         [](const Segment& segment) { return segment.mode == Mode::d2; });
-      const bool reversed = segments.front().mode == Mode::d2 && sheared > 1;
+      std::set<bool> ways;  // of shear
+      for (const Leg& leg : test.path.nominal_legs(0.7, false))
+        if (leg.eps_dev[1] != leg.eps_dev[0]) ways.insert(leg.eps_dev[1] > leg.eps_dev[0]);
+      const bool reversed = segments.front().mode == Mode::d2 && ways.size() > 1;
       if ((uni || reversed) && test.role != calibrate::Role::memory) {
         EXPECT_EQ(test.role, calibrate::Role::predict) << file << ": " << test.name;
       }
