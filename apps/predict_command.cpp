@@ -223,7 +223,7 @@ Action add_predict(CLI::App& program) {
       ->type_name("FILE.csv");
   command
       ->add_option("--form", arguments->form,
-                   "reduced_closed, reduced, coupled or coupled_3_14; coupled takes terms: coupled+energy")
+                   "reduced_closed, reduced, coupled, memory or coupled_3_14; with terms: coupled+energy")
       ->type_name("FORM")
       ->capture_default_str();
   command->add_option("--rtol", arguments->rtol, "relative tolerance of the integration (default: 1e-8)")

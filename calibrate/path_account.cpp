@@ -46,7 +46,7 @@ std::string undetermined(const PathProblem& problem, const PathFit& fit, std::si
   if (fit.errors.errors.empty()) return "nothing could be fitted";
   if (!fit.blind.reasons[k].empty()) return fit.blind.reasons[k];
   if (problem.at_bound(k, fit.best.values[k])) return "it rests on the bound of the law";
-  if (fit.errors.errors[k] > problem.scales()[k]) return "its standard error exceeds its value";
+  if (fit.errors.errors[k] > std::abs(fit.best.values[k])) return "its standard error exceeds its value";
   if (fit.profiles.empty()) return "";
   const Profile& profile = fit.profiles[k];
   if (!profile.low || !profile.high)

@@ -41,6 +41,7 @@ void add_term(Choice& choice, const std::string& name, const std::string& whole)
     if (std::find(term.forms.begin(), term.forms.end(), choice.form) == term.forms.end()) continue;
     names.push_back(term.name);
     if (name != term.name) continue;
+    if (choice.terms.*term.flag) throw Error("", "form", "names a term twice, got \"" + whole + "\"");
     choice.terms.*term.flag = true;
     return;
   }
@@ -87,6 +88,7 @@ Choice choice_of(const std::string& name) {
   std::string part;
   std::getline(parts, part, '+');
   Choice choice{form_of(part), {}};
+  if (name.ends_with('+')) throw Error("", "form", "must not end with a plus, got \"" + name + "\"");
   while (std::getline(parts, part, '+')) add_term(choice, part, name);
   return choice;
 }
@@ -123,7 +125,8 @@ void add_memory(BasicLaws<P>& laws, const ParameterSet& parameters, const std::s
   laws.memory.over = over_compression_of(memory, read);
   const auto needed = [&](const std::optional<Parameter>& parameter, const char* key) {
     if (!parameter)
-      throw Error(parameters.file, std::string("memory.") + key, "is missing; " + who + " needs it");
+      throw Error(parameters.file, std::string("memory.") + key,
+                  "is missing; " + who + " needs it (fit and calibrate write it)");
     return read(*parameter);
   };
   laws.memory.eps_c = needed(memory.eps_c, "eps_c");

@@ -289,8 +289,10 @@ Markup predictions_section(const Inputs& inputs) {
       "parameters has read. Dots are the DEM's, a shade of grey per seed; lines are the law in its three "
       "forms: the reduced law with the current <var>ν</var> in Eqs. 2.17 and 2.18 (closed form), the same as "
       "rate equations (rate form), and the coupled law of Eq. 4.16, in which stress and fabric act on each "
-      "other; and beside them the coupled law with the terms past the thesis that the parameters have numbers "
-      "for (named after a plus). The scale of <var>s</var><sub>dev</sub> leaves out where <var>P</var>* is below a hundredth of "
+      "other; and beside them the coupled law with the terms past the thesis that the parameters have "
+      "numbers "
+      "for (named after a plus). The scale of <var>s</var><sub>dev</sub> leaves out where <var>P</var>* is "
+      "below a hundredth of "
       "its largest value. In the tables: mean over seeds, each seed in brackets. Scatter between seeds: the "
       "same relative distance between two packings of the DEM itself, mean over pairs; a law that met the "
       "mean of all packings would still miss each of them by about 0.7 of it.</p>\n"_html;

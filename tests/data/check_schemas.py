@@ -103,7 +103,7 @@ def check_schemas(schemas):
 
 def check_examples(schemas, data):
     faults, count = [], 0
-    kinds = {"paths": "path", "scenes": "scene", "campaigns": "campaign", "thesis": "parameters"}
+    kinds = {"paths": "path", "scenes": "scene", "campaigns": "campaign", "thesis": "parameters", "grains": "parameters"}
     for folder, kind in kinds.items():
         files = sorted((data / folder).glob("*.json"))
         if not files:
