@@ -63,8 +63,9 @@ void check_samples(const std::vector<Sample>& samples, std::size_t legs) {
 /// The slopes of sensitive_columns(), name by name.
 template <class S>
 void append_slopes(std::vector<double>& row, const BasicState<S>& state, std::size_t names) {
+  const S none(0.0), &F_dev = state.jammed ? state.F_dev : none;  // as in the column itself
   for (std::size_t k = 0; k < names; ++k)
-    for (const S* x : {&state.P, &state.sigma_dev, &state.F_dev, &state.phi_J}) row.push_back(x->slope[k]);
+    for (const S* x : {&state.P, &state.sigma_dev, &F_dev, &state.phi_J}) row.push_back(x->slope[k]);
 }
 
 std::string where(double nu, double eps_dev) {

@@ -1,6 +1,7 @@
 #include "grainlaw/model/sensitive_point.hpp"
 
 #include <array>
+#include <type_traits>
 #include <utility>
 
 #include "grainlaw/model/system_of.hpp"
@@ -59,6 +60,27 @@ bool move_to_pressure(const Rates& rates, double pressure, S& t, std::array<S, s
   return true;
 }
 
+/// From the state that arrived at an event of `form` at t to the event itself, by Newton's step in t; `rest`
+/// is its distance, with slopes, and `plain` the same form without any.
+template <class Plain, class Rates, class S, std::size_t size>
+bool move_to_event(const Plain& plain, const Stretch& stretch, const Direction& direction, const Rates& rates,
+                   const S& rest, S& t, std::array<S, size>& y) {
+  using D = Dual<1>;
+  std::array<S, size> dydt;
+  if (!rates(t, y, dydt)) return false;
+  std::array<D, size> moving;
+  for (std::size_t i = 0; i < size; ++i) {
+    moving[i] = y[i].value;
+    moving[i].slope[0] = dydt[i].value;
+  }
+  const D nu = stretch.nu(D(t.value, 0));
+  const D distance = plain.distance_to_event(plain.coefficients(nu, direction), direction, moving.data());
+  const S step = -(rest / distance.slope[0]);
+  t = t + step;
+  for (std::size_t i = 0; i < size; ++i) y[i] = y[i] + dydt[i] * step;
+  return true;
+}
+
 /// CVODES: the values by `plain`, and d/dt of the slopes, J s_k + d rate/dp_k, from one evaluation of the
 /// rate with numbers that carry them.
 template <class S, class Plain>
@@ -66,6 +88,18 @@ struct BySensitiveIntegrator {
   const Plain& plain;
   Integrator& integrator;
   std::size_t count;
+
+  template <class Form, class Rates, class Numbers>
+  bool to_event(const Form& form, const BasicStretch<S>& stretch, const BasicDirection<S>& direction,
+                const Stretch& values, const Direction& direction_values, const Rates& rates, S& t,
+                Numbers& y) const {
+    if constexpr (std::is_base_of_v<Coupled, Plain>) return move_to_pressure(rates, smallest_pressure, t, y);
+    if constexpr (std::is_same_v<Memory, Plain>)
+      return move_to_event(
+          plain, values, direction_values, rates,
+          S(form.distance_to_event(form.coefficients(stretch.nu(t), direction), direction, y.data())), t, y);
+    return false;  // the others have no events
+  }
 
   template <class Form, class NextSample, class Visit>
   Reached<S> operator()(const Form& form, BasicState<S>& state, const BasicStretch<S>& stretch,
@@ -99,7 +133,7 @@ struct BySensitiveIntegrator {
       Numbers y = Both::joined(at.y.data(), at.s.data(), count);
       bool defined = true;
       if (arrival.event)
-        defined = move_to_pressure(rates, smallest_pressure, t = arrival.t, y);
+        defined = to_event(form, stretch, begin.direction, values, direction, rates, t = arrival.t, y);
       else if (t.slope != S().slope)
         defined = move_to(rates, t, arrival.t, y);
       if (!defined)

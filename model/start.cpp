@@ -198,7 +198,13 @@ void Filling<T>::fill_history() {
     const auto too_low = [&](double phi) {
       return value(jamming_density_after(over, T(phi), 1.0)) < value(state.phi_J);
     };
-    if (too_low(value(state.nu))) phi_max = turning_point(value(state.nu), most, too_low);
+    if (too_low(value(state.nu))) {
+      // A Newton step after the bisection gives it its slopes.
+      const double phi = turning_point(value(state.nu), most, too_low);
+      const auto there = jamming_density_after(over, Dual<1, T>(T(phi), 0), 1.0);
+      phi_max = phi;
+      if (value(there.slope[0]) > 0) phi_max = phi - (there.value - state.phi_J) / value(there.slope[0]);
+    }
     echo("phi_max", phi_max,
          "the compression that leaves phi_J, by Eqs. 5.1 and 5.5 with M = 1, at least nu");
   }

@@ -131,6 +131,53 @@ void expect_derivatives(const Case& c, Form form, Terms terms = {}) {
   EXPECT_GT(worst[3], 10 * least) << "no rounding error: is this a difference at all?";
 }
 
+/// The form with memory, through over-compression and loss of contact, and through shear jamming and back.
+/// Its rates have kinks ((G/B)_ini is cut at F_v,min), which derivatives cannot pass at 1e-12.
+TEST(Sensitivities, OfTheFormWithMemory) {
+  ParameterSet set = thesis();
+  set.memory->eps_c.emplace().value = 0.076;
+  set.memory->eps_r.emplace().value = 0.0123;
+  const Case paths[] = {
+      {"over-compression", R"({"start": {"nu": 0.69}, "segments": [{"mode": "uni", "amount": 0.03},
+          {"mode": "uni", "amount": -0.1}, {"mode": "uni", "amount": 0.15}]})",
+       set},
+      {"shear jamming", R"({"start": {"nu": 0.661}, "segments": [{"mode": "d2", "amount": 0.3},
+          {"mode": "d2", "amount": -0.06}, {"mode": "d2", "amount": -0.3}]})",
+       set}};
+  for (const Case& c : paths) {
+    SCOPED_TRACE(c.name);
+    auto names = names_of_sensitivities(c.set, path_of(c.path), {Form::memory, {}});
+    std::erase_if(names, [](const std::string& name) { return name.ends_with("nu_c_contacts"); });
+    if (c.name == std::string("shear jamming"))  // the density of those contacts moves with both rows' nu_c
+      std::erase_if(names, [](const std::string& name) { return name.ends_with(".nu_c"); });
+    const auto s = predict_sensitivities(c.set, path_of(c.path), names, {Form::memory, 1e-8, 1e-12, 4});
+    ASSERT_FALSE(s.prediction.status.failed()) << s.prediction.status.message;
+    EXPECT_GE(s.events.size(), 2U);
+    for (const std::string& name : names) {
+      const double size = size_of(c, name), h = 1e-5 * size;
+      const Record up = record_of(*moved(c, name, h), Form::memory, {}),
+                   down = record_of(*moved(c, name, -h), Form::memory, {});
+      for (const std::string& column : sensitive_columns()) {
+        const auto& slopes = s.prediction.record[sensitivity_column(column, name)];
+        double error = 0;
+        for (std::size_t i = 0; i < slopes.size(); ++i)
+          error = std::max(error, std::abs((up[column][i] - down[column][i]) / (2 * h) - slopes[i]));
+        EXPECT_LT(error, 1e-4 * largest(slopes) + 1e-6 * largest(up[column]) / size)
+            << column << " by " << name << " " << largest(slopes);
+      }
+    }
+  }
+}
+
+TEST(Sensitivities, OfFabricUnderVolumeChange) {
+  ParameterSet set = thesis();
+  set.volumetric.emplace();
+  set.volumetric->compression.value = 1.5;
+  set.volumetric->decompression.value = 0.7;
+  for (const Form form : {Form::coupled, Form::reduced})
+    expect_derivatives({"fabric", simple, set}, form, {.volumetric = true});
+}
+
 class SensitivitiesOf : public testing::TestWithParam<Case> {};
 
 TEST_P(SensitivitiesOf, AreTheDerivativesOfPredictions) {
