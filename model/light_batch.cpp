@@ -109,8 +109,9 @@ struct Left {
   void operator()(std::size_t i) const { call(who, i); }
 };
 
-// Without optimisation nothing is inlined, and functions that pass wide vectors would disagree on how.
-#if defined(__x86_64__) && defined(__OPTIMIZE__)
+// Without optimisation nothing is inlined, and functions that pass wide vectors would disagree on how; under
+// sanitizers they take a minute to compile.
+#if defined(__x86_64__) && defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
 #define GRAINLAW_KERNELS 1
 #else
 #define GRAINLAW_KERNELS 0
