@@ -18,7 +18,7 @@ model::Parameter assumed(double value, const std::string& why) {
   model::Parameter parameter;
   parameter.value = value;
   parameter.source = "assumed";
-  parameter.note = why + "; that of D2 cycles of 9261 grains, w = 3";
+  parameter.note = why + "; that of the D2 cycles of data/records/base, w = 3";
   return parameter;
 }
 

@@ -23,8 +23,10 @@ constexpr const char* names[] = {"phi_J", "phi_J_pressure_alone", "phi_J_contact
 Estimates estimates_of(const PackingLaw& law, const State& s) {
   const PressureCurve pressure = law.pressure();
   const ContactCurve contacts = law.contacts();
-  const bool presses = s.P > 0;
-  return {jamming_density_from_pressure_and_contacts(pressure, s.nu, s.P, s.C).value_or(nan),
+  // Grains that touch in passing press a little, too: with fewer contacts than balance needs nothing is
+  // jammed.
+  const bool presses = s.P > 0 && !(s.C_star < contacts.C0);
+  return {presses ? jamming_density_from_pressure_and_contacts(pressure, s.nu, s.P, s.C).value_or(nan) : nan,
           presses ? jamming_density_from_pressure(pressure, s.nu, s.P).value_or(nan) : nan,
           jamming_density_from_contacts(contacts, s.nu, s.C_star).value_or(nan),
           jamming_density_from_nonrattlers(contacts, s.nu, s.f_NR).value_or(nan)};

@@ -44,6 +44,10 @@ Law make_law(const ParameterSet& parameters, const Choice& choice) {
 }
 
 std::optional<std::string> objection(const Laws& laws, Form form, const Stretch& stretch) {
+  constexpr double most = 1e6;
+  if (std::abs(stretch.eps_dev) > most || std::abs(stretch.eps_vol) > 100)
+    return "the strain must be at most 1e6 in eps_dev and 100 in eps_vol, got " + shown(stretch.eps_dev) +
+           " and " + shown(stretch.eps_vol);
   if (stretch.eps_dev == 0) return std::nullopt;
   for (const double nu : {stretch.nu(0), stretch.nu(1)}) {  // Eq. 2.20 is monotonic between
     if (auto reason = out_of_range("s_max", laws.s_max, nu, false)) return reason;

@@ -72,7 +72,7 @@ class StretchRate {
     double sum = form_.relaxation(at_start_, stretch_, direction_, y);
     if (!rests())
       sum += std::abs(value(stretch_.eps_vol)) /
-             std::abs(std::log(value(stretch_.nu_0) / value(form_.unjamming_density())));
+             (std::abs(std::log(value(stretch_.nu_0) / value(form_.unjamming_density()))) + 1e-6);
     return sum;
   }
   std::array<double, F::size> scales(const T* y) const { return form_.scales(at_start_, y); }

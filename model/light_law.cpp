@@ -51,7 +51,7 @@ bool LightLaw::quick(State& state, const Stretch& stretch, LightCache* cache) co
   if (stretch.eps_vol != 0 && !(stretch.nu(1.0) > form->unjamming_density())) return false;
   LightCache own;
   LightCache& known = cache ? *cache : own;
-  if (known.nu != state.nu) known = {state.nu, form->coefficients(state.nu)};
+  if (known.nu != state.nu || known.law != this) known = {this, state.nu, form->coefficients(state.nu)};
   const State before = state;
   const Reached<double> reached = light_.run(*form, state, stretch, known.coefficients, no_sample, no_visit);
   if (!reached.status.failed() && !reached.lost_pressure) return true;
@@ -62,7 +62,7 @@ bool LightLaw::quick(State& state, const Stretch& stretch, LightCache* cache) co
 template <class T, class Visitor>
 Status LightLaw::walk_along(BasicState<T>& state, const BasicStretch<T>& stretch,
                             std::span<const double> samples, const Visitor& visit) const {
-  if (Status status = admits(values_of(stretch)); status.failed()) return status;
+  if (Status status = admits(values_of(state), values_of(stretch)); status.failed()) return status;
   BasicState<T> moved = state;
   Status status = std::visit(
       [&](const auto& form) {
@@ -78,7 +78,12 @@ Status LightLaw::walk_along(BasicState<T>& state, const BasicStretch<T>& stretch
   return {};
 }
 
-Status LightLaw::admits(const Stretch& stretch) const {
+Status LightLaw::admits(const State& state, const Stretch& stretch) const {
+  if (!is_finite(state))
+    return {Status::Code::failed,
+            "the state holds what is not a number: nu, P, sigma_dev, F_dev or its memory"};
+  if (!(state.memory >= 0 && state.memory <= 1))
+    return {Status::Code::failed, "the memory of shear must be in [0, 1], got " + shown(state.memory)};
   if (!std::isfinite(stretch.eps_vol) || !std::isfinite(stretch.eps_dev))
     return {Status::Code::failed, "the strain increment must be finite, got eps_vol = " +
                                       shown(stretch.eps_vol) + ", eps_dev = " + shown(stretch.eps_dev)};
@@ -89,7 +94,7 @@ Status LightLaw::admits(const Stretch& stretch) const {
 Status LightLaw::update(State& state, double eps_vol, double eps_dev, LightCache* cache) const {
   const Stretch stretch{state.nu, eps_vol, eps_dev};
   if (quick(state, stretch, cache)) return {};
-  if (eps_vol == 0 && eps_dev == 0) return {};
+  if (eps_vol == 0 && eps_dev == 0) return admits(state, stretch);
   return walk_along(state, stretch, {}, no_visit);
 }
 

@@ -22,6 +22,7 @@ struct Tangent {
 /// What the coupled form computed from nu last. Give the same one again and again to a point, or to a row of
 /// points of one volume fraction, and increments at constant volume cost a third.
 struct LightCache {
+  const void* law = nullptr;  ///< whose they are
   double nu = -1;
   Coupled::Coefficients<double> coefficients{};
 };
@@ -52,7 +53,7 @@ class LightLaw {
   Status walk_along(BasicState<T>& state, const BasicStretch<T>& stretch, std::span<const double> samples,
                     const Visitor& visit) const;
   bool quick(State& state, const Stretch& stretch, LightCache* cache) const;
-  Status admits(const Stretch& stretch) const;
+  Status admits(const State& state, const Stretch& stretch) const;
 
   Law law_;
   Light light_;

@@ -39,7 +39,7 @@ BasicHistory<T> compressed(const BasicOverCompression<P>& o, BasicHistory<T> h, 
     const T limit = jamming_density_limit(o, h.phi_max);
     T to = nu;
     if (h.phi_max < to) to = h.phi_max;
-    if (h.phi_H > o.phi_SJ && h.phi_H < limit) {
+    if (h.phi_H >= o.phi_SJ && h.phi_H < limit) {
       const T cycles = o.mu * pow(-log((limit - h.phi_H) / (limit - o.phi_SJ)), 1 / o.beta);
       h.phi_H = jamming_density_after(o, h.phi_max, T(cycles + log(to / from) / log(h.phi_max / h.phi_H)));
     }
@@ -83,7 +83,13 @@ struct BasicMemory {
   /// phi_J of a memory m and history phi_H.
   template <class C, class Y>
   auto jamming_density_of(const C& phi_H, const Y& m) const {
-    return phi_H + m * (laws.shear_pressure.nu_c - phi_H);
+    return phi_H + m * (steady_density(phi_H) - phi_H);
+  }
+  /// phi_s, but not above phi_H: shear takes and never gives.
+  template <class C>
+  Meet<P, C> steady_density(const C& phi_H) const {
+    if (phi_H < laws.shear_pressure.nu_c) return phi_H;
+    return laws.shear_pressure.nu_c;
   }
   /// Eq. 2.14 of a memory m and history phi_H: its numbers lie between those of both rows.
   template <class C, class Y>
@@ -99,7 +105,7 @@ struct BasicMemory {
          mix(iso.contacts.phi_c, shear.contacts.phi_c), mix(iso.contacts.phi_v, shear.contacts.phi_v)},
         mix(iso.p0, shear.p0),
         mix(iso.gamma_p, shear.gamma_p),
-        mix(phi_H, shear.nu_c)};
+        R(jamming_density_of(phi_H, m))};
   }
   /// P* at nu of a memory m and history phi_H; 0 at and below phi_J.
   template <class C, class Y>
@@ -216,7 +222,7 @@ struct BasicMemory {
     return state;
   }
 
-  /// No phi_J is lower.
+  /// Above it shear can jam a point of any history.
   P unjamming_density() const { return laws.shear_pressure.nu_c; }
 
   /// What the rates have to know of the state that a stretch begins with.

@@ -119,7 +119,7 @@ State values_of(const BasicState<T>& s) {
 template <class T>
 bool is_finite(const BasicState<T>& s) {
   return std::isfinite(value(s.nu) + value(s.eps_vol) + value(s.eps_dev) + value(s.P) + value(s.sigma_dev) +
-                       value(s.F_dev));
+                       value(s.F_dev) + value(s.history.phi_H) + value(s.history.phi_max) + value(s.memory));
 }
 
 /// |1 - q x/x_sat|, the scale of S and S_F in a direction. At saturation there is no elastic part: plastic

@@ -100,6 +100,8 @@ class Walk {
   /// Whether the form integrates without contacts as well, and finds both events itself.
   static constexpr bool goes_on_unjammed = requires { F::goes_on_unjammed; };
 
+  static constexpr const char* not_a_number = "the law gives a stress or fabric that is no number";
+
   /// A stretch along which contact is lost and found again more often than this is given up.
   static constexpr int most_phases = 1000;
 
@@ -133,7 +135,9 @@ class Walk {
         form_, state_, course_.piece(1.0), [&] { return course_.next_sample(1.0); },
         [&](const BasicState<T>& state) { visit(state); });
     course_.advance(reached.t, 1.0);
-    if (reached.status.failed() || !reached.lost_pressure) return reached.status;
+    if (reached.status.failed()) return reached.status;
+    if (!is_finite(state_)) return {Status::Code::failed, not_a_number};
+    if (!reached.lost_pressure) return {};
     if (state_.jammed)
       form_.unjam(state_);
     else
@@ -169,8 +173,7 @@ class Walk {
                                       [&](const BasicState<T>& state) { visit(state); });
     course_.advance(reached.t, end);
     if (reached.status.failed()) return reached.status;
-    if (!is_finite(state_))
-      return {Status::Code::failed, "the law gives a stress or fabric that is no number"};
+    if (!is_finite(state_)) return {Status::Code::failed, not_a_number};
     if (!leaves && !reached.lost_pressure && state_.P > 0) return {};
     form_.unjam(state_);
     note_(false, state_);

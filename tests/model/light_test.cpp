@@ -195,6 +195,21 @@ TEST(Light, ACacheChangesNothing) {
   }
 }
 
+TEST(Light, ACacheKnowsWhoseItIs) {
+  ParameterSet other = thesis();
+  other.moduli->p0.value *= 2;
+  const LightLaw one(make_law(thesis(), Form::coupled), {1e-8, 1e-11}),
+      two(make_law(other, Form::coupled), {1e-8, 1e-11});
+  State first = start_at(one.law(), 0.7), second = first, alone = first;
+  LightCache shared;
+  ASSERT_FALSE(one.update(first, 0, 1e-3).failed());
+  ASSERT_FALSE(one.update(first, 0, 1e-3, &shared).failed());
+  ASSERT_FALSE(two.update(second, 0, 1e-3).failed());
+  ASSERT_FALSE(two.update(second, 0, 1e-3, &shared).failed());
+  for (int i = 0; i < 2; ++i) ASSERT_FALSE(two.update(alone, 0, 1e-3).failed());
+  EXPECT_EQ(second.sigma_dev, alone.sigma_dev);
+}
+
 TEST(Light, DoesNotAllocate) {
   const LightLaw light(make_law(thesis(), Form::coupled), {1e-8, 1e-11});
   State state = start_at(light.law(), 0.7);

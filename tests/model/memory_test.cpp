@@ -205,6 +205,52 @@ TEST(Memory, BelowTheDensityOfSteadyShearNothingJams) {
   }
 }
 
+TEST(Memory, ShearNeverUnjamsAPackingThatJamsBelowSteadyShear) {
+  // Over-compression to 0.66 leaves phi_H between phi_SJ and phi_s.
+  const double phi_H = 0.6570, nu = 0.6575;
+  ASSERT_LT(nu, form().laws.shear_pressure.nu_c);
+  MaterialPoint point = point_at(isotropic(nu, phi_H));
+  ASSERT_TRUE(point.state().jammed);
+  for (const double e : {0.3, -0.3, 0.05, -0.05}) {
+    ASSERT_FALSE(point.walk(0, e).failed());
+    EXPECT_TRUE(point.state().jammed);
+    EXPECT_EQ(point.state().phi_J, phi_H);
+  }
+}
+
+TEST(Memory, VolumeMovesFromAnyDensityOnTheLightPath) {
+  const Law law = make_law(with_memory(), Form::memory);
+  const LightLaw light(law, {1e-8, 1e-11});
+  const double phi_s = form().laws.shear_pressure.nu_c;
+  for (const double nu : {phi_s, phi_s * (1 + 1e-12), phi_s * (1 - 1e-12)})
+    for (const double v : {1e-3, -1e-3, 1e-6, 1e-300}) {
+      State state = isotropic(nu, 0.6649);
+      const Status status = light.update(state, v, 0.01);
+      EXPECT_FALSE(status.failed()) << nu << " " << v << status.message;
+    }
+}
+
+TEST(Memory, StatesThatAreNoneAreRefused) {
+  const LightLaw light(make_law(with_memory(), Form::memory), {1e-8, 1e-11});
+  const State good = isotropic(0.7, 0.6649);
+  for (const double wrong : {std::nan(""), -0.1, 1.1}) {
+    State state = good;
+    state.memory = wrong;
+    EXPECT_TRUE(light.update(state, 0, 0.01).failed());
+    EXPECT_TRUE(light.update(state, 0, 0).failed());
+  }
+  MaterialPoint point = point_at(good);
+  EXPECT_TRUE(point.walk(1e3, 0).failed());
+  EXPECT_TRUE(point.walk(0, 1e300).failed());
+  EXPECT_EQ(point.state().nu, good.nu);
+}
+
+TEST(Memory, AFirstCompressionMayBeginAtTheLowestDensity) {
+  const auto& over = form().laws.memory.over;
+  const History h = compressed<double, double>(over, {over.phi_SJ, 0.73, 0.64}, 0.73);
+  EXPECT_NEAR(h.phi_H, jamming_density_after(over, 0.73, 1.0), 1e-12);
+}
+
 TEST(Memory, ReversalInTheMiddleOfShearJamming) {
   MaterialPoint point = point_at(isotropic(0.6610, 0.6649));
   for (int i = 0; i < 200; ++i) {
