@@ -72,8 +72,8 @@ class LightBatch {
   };
   struct Kernel;  // light_batch.cpp
 
-  double* column(Column which) { return &values_[which * stride_]; }
-  const double* column(Column which) const { return &values_[which * stride_]; }
+  double* column(Column which) { return values_.data() + which * stride_; }
+  const double* column(Column which) const { return values_.data() + which * stride_; }
   Outcome update_range(std::size_t first, std::size_t last, const double* eps_vol, const double* eps_dev);
 
   const LightLaw& law_;
