@@ -56,8 +56,13 @@ std::string held_out_table(const Json& held_out) {
   if (tests.empty()) return "";
   std::string text = fmt::format("{:<20} {:>17} {:>17} {:>17}   (held out: relative error before > after)\n",
                                  "", "P", "sigma_dev", "F_dev");
+  int grew = 0, all = 0;
   for (const auto& [test, columns] : tests) {
     text += fmt::format("{:<20}", test);
+    for (const auto& [column, sum] : columns) {
+      grew += sum.after > sum.before ? 1 : 0;
+      ++all;
+    }
     for (const char* column : {"P", "sigma_dev", "F_dev"}) {
       const auto sum = columns.find(column);
       text += sum == columns.end() ? fmt::format(" {:>17}", "-")
@@ -66,6 +71,8 @@ std::string held_out_table(const Json& held_out) {
     }
     text += "\n";
   }
+  text += fmt::format("of {} errors on tests that were held out {} grew{}\n", all, grew,
+                      2 * grew > all ? ": what was gained on the fitted tests does not carry over" : "");
   return text;
 }
 
