@@ -13,7 +13,7 @@
 
 #include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/apps/bench_commands.hpp"
-#include "grainlaw/apps/bench_page.hpp"
+#include "grainlaw/apps/bench_dem_page.hpp"
 #include "grainlaw/apps/campaign_talk.hpp"
 #include "grainlaw/apps/interrupt.hpp"
 #include "grainlaw/apps/locations.hpp"

@@ -9,9 +9,9 @@
 
 #include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/apps/bench_commands.hpp"
+#include "grainlaw/apps/bench_model.hpp"
 #include "grainlaw/apps/bench_model_page.hpp"
 #include "grainlaw/apps/locations.hpp"
-#include "grainlaw/apps/model_bench.hpp"
 #include "grainlaw/apps/report/gnuplot.hpp"
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/dem/provenance.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "grainlaw/apps/model_bench.hpp"
+#include "grainlaw/apps/bench_model.hpp"
 
 namespace grainlaw::apps {
 

@@ -1,4 +1,4 @@
-#include "grainlaw/apps/model_bench.hpp"
+#include "grainlaw/apps/bench_model.hpp"
 
 #include <fmt/format.h>
 

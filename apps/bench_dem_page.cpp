@@ -1,4 +1,4 @@
-#include "grainlaw/apps/bench_page.hpp"
+#include "grainlaw/apps/bench_dem_page.hpp"
 
 #include <algorithm>
 #include <cmath>
