@@ -30,11 +30,11 @@ bool reverses(const TestRecord& test) {
          std::any_of(test.legs.begin(), test.legs.end(), [&](const Leg& leg) { return shears(leg, -1); });
 }
 
-/// Whether the tests determine it: not where the fit failed, where it rests on a bound, or where its error is
-/// as large as itself.
-bool is_told(const model::Parameter& parameter) {
-  return parameter.source == "fit" && parameter.stderr_ && *parameter.stderr_ < 0.5 * parameter.value &&
-         parameter.note.find("bound") == std::string::npos;
+/// Whether the account of a fit says that the tests determine this number.
+bool is_told(const Json& account, const std::string& name) {
+  for (const Json& parameter : account.at("parameters"))
+    if (parameter.at("name") == name) return parameter.at("determined").get<bool>();
+  return false;
 }
 
 }  // namespace
@@ -52,16 +52,16 @@ void add_memory_strains(const std::filesystem::path& dir, const RecordFolder& fo
     return test.role == Role::fit && test.mode == "d2" && reverses(test);
   });
   if (any_reverses) options.names.push_back("memory.eps_r");
-  parameters.memory->eps_c = assumed(usual_eps_c, "no D2 test tells");
-  parameters.memory->eps_r =
-      assumed(usual_eps_r, any_reverses ? "the D2 tests do not tell" : "no D2 test is reversed");
+  auto& memory = *parameters.memory;
+  memory.eps_c = assumed(usual_eps_c, "no D2 test tells");
+  memory.eps_r = assumed(usual_eps_r, any_reverses ? "the D2 tests do not tell" : "no D2 test is reversed");
   try {
     const PolishOutput fitted = polish(dir, parameters, options);
     const auto& told = *fitted.parameters.memory;
-    if (is_told(*told.eps_c)) parameters.memory->eps_c = told.eps_c;
-    if (is_told(*told.eps_r)) parameters.memory->eps_r = told.eps_r;
-  } catch (const Error&) {
-    // No D2 test, or none that the law can follow: what is assumed says so.
+    if (is_told(fitted.account, "memory.eps_c")) memory.eps_c = told.eps_c;
+    if (is_told(fitted.account, "memory.eps_r")) memory.eps_r = told.eps_r;
+  } catch (const Error& error) {  // no D2 test that could be followed: the other fits stand
+    memory.eps_c = assumed(usual_eps_c, std::string("no D2 test tells (") + error.what() + ")");
   }
 }
 
