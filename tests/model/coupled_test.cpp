@@ -169,17 +169,10 @@ TEST(Coupled, Jacobian) {
   const std::array<double, 3> y{0.02, 0.0012, 0.07}, size{0.01, 0.001, 0.05};
   std::array<double, 9> J{};
   ASSERT_TRUE(jacobian_of(law, stretch, direction, 0.4, y.data(), J.data()));
-  const auto rate = [&](std::size_t i, std::size_t j, double value) {
-    auto moved = y;
-    moved[j] = value;
-    std::array<double, 3> dy{};
-    EXPECT_TRUE(rate_at(law, stretch, direction, 0.4, moved.data(), dy.data()));
-    return dy[i];
-  };
   // P* enters as 1/P*, sigma squared in its own rate: a V. Everything else is linear: exact.
   for (std::size_t j = 0; j < 3; ++j)
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto f = [&](double value) { return rate(i, j, value); };
+      const auto f = rate_by(law, stretch, direction, 0.4, y, i, j);
       if ((j == 0 && i < 2) || (j == 1 && i == 1))
         expect_v_shape(f, y[j], J[i + 3 * j], size[j]);
       else

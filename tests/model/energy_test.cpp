@@ -64,13 +64,7 @@ TEST(Energy, Jacobian) {
   ASSERT_TRUE(jacobian_of(law, stretch, direction, 0.4, y.data(), J.data()));
   for (std::size_t j = 0; j < 2; ++j)  // stress by stress; F_dev enters as before
     for (std::size_t i = 0; i < 2; ++i) {
-      const auto f = [&](double value) {
-        auto moved = y;
-        moved[j] = value;
-        std::array<double, 3> dy{};
-        EXPECT_TRUE(rate_at(law, stretch, direction, 0.4, moved.data(), dy.data()));
-        return dy[i];
-      };
+      const auto f = rate_by(law, stretch, direction, 0.4, y, i, j);
       expect_v_shape(f, y[j], J[i + 3 * j], size[j]);
     }
 }
