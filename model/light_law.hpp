@@ -20,7 +20,7 @@ struct Tangent {
 };
 
 /// What the coupled form computed from nu last. Give the same one again and again to a point, or to a row of
-/// points of one volume fraction, and increments at constant volume cost a third.
+/// points of one volume fraction, and increments at constant volume cost a third less.
 struct LightCache {
   const void* law = nullptr;  ///< whose they are
   double nu = -1;

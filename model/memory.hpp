@@ -1,18 +1,19 @@
 // The coupled form with memory: pressure is bounded by the volume fraction and a jamming density phi_J(H)
-// that over-compression raises (Eqs. 5.1, 5.5) and shear takes away (Eq. 5.3) and gives back at a reversal
-// (Eq. 5.13).
+// that over-compression raises (Eqs. 5.1, 5.5), and that shear takes away and gives back at a reversal (the
+// thesis has Eqs. 5.3 and 5.13 for that; here it is one rate).
 //
 // Shear is remembered as m in [0, 1], 0 where it is forgotten and 1 in steady shear. With a = q F_dev/F_max,
 // the alignment of the fabric with the direction of shear,
-//   dm = (1 - m) <a>/eps_c |d eps_dev| - m <-a>/eps_r |d eps_dev|
-//   phi_J = phi_H + (phi_s - phi_H) m,   P* = Eq. 2.14 at phi_J, its numbers between those of the isotropic
-//   row and of the
-//                                        row of steady shear as m goes from 0 to 1
-//   dsigma*_dev, dF_dev as in Eq. 4.16
+//   dm    = (1 - m) <a>/eps_c |d eps_dev| - m <-a>/eps_r |d eps_dev|
+//   phi_J = phi_H + (phi_s - phi_H) m, or phi_H where that is below phi_s
+//   P*    = Eq. 2.14 at phi_J; its numbers go from the isotropic row to that of steady shear as m goes from 0
+//           to 1
+// dsigma*_dev and dF_dev are those of Eq. 4.16. phi_H is what over-compression has left, phi_s where pressure
+// begins in steady shear.
+//
 // From isotropy a = 1 - exp(-beta_F eps_dev), so m begins with no slope, as exp[-(eps/eps0)^alpha] does with
 // alpha > 1, but without its singular strain; after a reversal the fabric has to turn first, and phi_J comes
-// back meanwhile: nothing jumps. phi_H is what over-compression has left, phi_s where pressure begins in
-// steady shear.
+// back meanwhile: nothing jumps.
 #pragma once
 
 #include <algorithm>

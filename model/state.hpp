@@ -72,7 +72,7 @@ struct BasicState {
   T sigma_dev = 0;
   T F_dev = 0;
   T phi_J = 0;          ///< jamming density: at and below it the point is unjammed
-  bool jammed = false;  ///< unjammed: P = sigma_dev = F_dev = 0, no contacts
+  bool jammed = false;  ///< unjammed: P = sigma_dev = 0, no contacts; F_dev = 0 but with memory
   BasicDirection<T> direction;
   BasicHistory<T> history{};  ///< only in the form with memory
   T memory = 0;               ///< of shear, m in [0, 1]; only in the form with memory
