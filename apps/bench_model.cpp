@@ -12,10 +12,10 @@
 
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/record.hpp"
-#include "grainlaw/model/light_batch.hpp"
-#include "grainlaw/model/light_law.hpp"
-#include "grainlaw/model/point.hpp"
-#include "grainlaw/model/sensitivities.hpp"
+#include "grainlaw/model/light/light_batch.hpp"
+#include "grainlaw/model/light/light_law.hpp"
+#include "grainlaw/model/walk/point.hpp"
+#include "grainlaw/model/walk/sensitivities.hpp"
 
 namespace grainlaw::apps {
 

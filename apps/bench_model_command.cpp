@@ -17,7 +17,7 @@
 #include "grainlaw/dem/provenance.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/version.hpp"
-#include "grainlaw/model/light_batch.hpp"
+#include "grainlaw/model/light/light_batch.hpp"
 
 namespace grainlaw::apps {
 

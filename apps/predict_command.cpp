@@ -18,8 +18,8 @@
 #include "grainlaw/element/record.hpp"
 #include "grainlaw/model/envelope.hpp"
 #include "grainlaw/model/predict.hpp"
-#include "grainlaw/model/sensitivities.hpp"
 #include "grainlaw/model/start.hpp"
+#include "grainlaw/model/walk/sensitivities.hpp"
 
 namespace grainlaw::apps {
 

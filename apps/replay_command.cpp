@@ -7,8 +7,8 @@
 #include "grainlaw/apps/commands.hpp"
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/element/error.hpp"
-#include "grainlaw/model/replay.hpp"
-#include "grainlaw/model/state_table.hpp"
+#include "grainlaw/model/c/replay.hpp"
+#include "grainlaw/model/c/state_table.hpp"
 
 namespace grainlaw::apps {
 

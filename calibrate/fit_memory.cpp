@@ -8,7 +8,7 @@
 
 #include "grainlaw/calibrate/fit_assess.hpp"
 #include "grainlaw/calibrate/fit_law.hpp"
-#include "grainlaw/model/shear_jamming.hpp"
+#include "grainlaw/model/laws/shear_jamming.hpp"
 
 namespace grainlaw::calibrate {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "grainlaw/calibrate/fit_packing.hpp"
 #include "grainlaw/calibrate/fit_problem.hpp"
-#include "grainlaw/model/packing_laws.hpp"
+#include "grainlaw/model/laws/packing_laws.hpp"
 
 namespace grainlaw::calibrate {
 

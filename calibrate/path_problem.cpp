@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "grainlaw/element/error.hpp"
-#include "grainlaw/model/sensitivities.hpp"
+#include "grainlaw/model/walk/sensitivities.hpp"
 
 namespace grainlaw::calibrate {
 namespace {

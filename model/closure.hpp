@@ -5,9 +5,9 @@
 #include <functional>
 #include <string>
 
-#include "grainlaw/model/dual.hpp"
+#include "grainlaw/model/laws/volumetric.hpp"
 #include "grainlaw/model/parameters.hpp"
-#include "grainlaw/model/volumetric.hpp"
+#include "grainlaw/model/walk/dual.hpp"
 
 namespace grainlaw::model {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/forms/law.hpp"
 
 namespace grainlaw::model {
 

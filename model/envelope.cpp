@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "grainlaw/model/point.hpp"
+#include "grainlaw/model/walk/point.hpp"
 
 namespace grainlaw::model {
 

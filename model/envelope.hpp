@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "grainlaw/element/record.hpp"
-#include "grainlaw/model/integrator.hpp"
-#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/forms/law.hpp"
 #include "grainlaw/model/status.hpp"
+#include "grainlaw/model/walk/integrator.hpp"
 
 namespace grainlaw::model {
 

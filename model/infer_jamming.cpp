@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "grainlaw/model/jamming_density.hpp"
+#include "grainlaw/model/laws/jamming_density.hpp"
 
 namespace grainlaw::model {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/material.hpp"
-#include "grainlaw/model/jamming_density.hpp"
-#include "grainlaw/model/moduli.hpp"
-#include "grainlaw/model/packing_laws.hpp"
-#include "grainlaw/model/saturation.hpp"
+#include "grainlaw/model/laws/jamming_density.hpp"
+#include "grainlaw/model/laws/moduli.hpp"
+#include "grainlaw/model/laws/packing_laws.hpp"
+#include "grainlaw/model/laws/saturation.hpp"
 
 namespace grainlaw::model {
 

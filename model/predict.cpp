@@ -6,11 +6,11 @@
 
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/model/columns.hpp"
-#include "grainlaw/model/controlled_path.hpp"
-#include "grainlaw/model/point.hpp"
 #include "grainlaw/model/pressure_drift.hpp"
-#include "grainlaw/model/sensitivities.hpp"
 #include "grainlaw/model/start.hpp"
+#include "grainlaw/model/walk/controlled_path.hpp"
+#include "grainlaw/model/walk/point.hpp"
+#include "grainlaw/model/walk/sensitivities.hpp"
 
 namespace grainlaw::model {
 

@@ -9,10 +9,10 @@
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/element/record.hpp"
-#include "grainlaw/model/integrator.hpp"
-#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/forms/law.hpp"
 #include "grainlaw/model/parameters.hpp"
 #include "grainlaw/model/status.hpp"
+#include "grainlaw/model/walk/integrator.hpp"
 
 namespace grainlaw::model {
 

@@ -8,7 +8,7 @@
 
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/path.hpp"
-#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/forms/law.hpp"
 #include "grainlaw/model/parameters.hpp"
 
 namespace grainlaw::model {

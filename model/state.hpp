@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "grainlaw/model/dual.hpp"
+#include "grainlaw/model/walk/dual.hpp"
 
 namespace grainlaw::model {
 

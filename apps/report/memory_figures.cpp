@@ -8,7 +8,7 @@
 #include "grainlaw/apps/report/prose.hpp"
 #include "grainlaw/apps/report/sections.hpp"
 #include "grainlaw/apps/report/symbols.hpp"
-#include "grainlaw/model/jamming_density.hpp"
+#include "grainlaw/model/laws/jamming_density.hpp"
 
 namespace grainlaw::report {
 namespace {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "grainlaw/element/json.hpp"
-#include "grainlaw/model/replay.hpp"
+#include "grainlaw/model/c/replay.hpp"
 #include "program.hpp"
 
 namespace grainlaw::apps {

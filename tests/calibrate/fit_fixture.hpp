@@ -18,9 +18,9 @@
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/element/record.hpp"
 #include "grainlaw/element/tensor.hpp"
-#include "grainlaw/model/packing_laws.hpp"
+#include "grainlaw/model/laws/packing_laws.hpp"
+#include "grainlaw/model/laws/saturation.hpp"
 #include "grainlaw/model/parameters.hpp"
-#include "grainlaw/model/saturation.hpp"
 
 namespace grainlaw::calibrate {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "fit_noise.hpp"
-#include "grainlaw/model/jamming_density.hpp"
+#include "grainlaw/model/laws/jamming_density.hpp"
 
 namespace grainlaw::calibrate {
 namespace {

@@ -7,7 +7,7 @@
 #include "fit_fixture.hpp"
 #include "grainlaw/calibrate/fit_records.hpp"
 #include "grainlaw/element/moduli_table.hpp"
-#include "grainlaw/model/moduli.hpp"
+#include "grainlaw/model/laws/moduli.hpp"
 
 namespace grainlaw::calibrate {
 namespace {

@@ -9,7 +9,7 @@
 #include "fit_noise.hpp"
 #include "grainlaw/calibrate/moduli_selection.hpp"
 #include "grainlaw/element/moduli_table.hpp"
-#include "grainlaw/model/moduli.hpp"
+#include "grainlaw/model/laws/moduli.hpp"
 
 namespace grainlaw::calibrate {
 namespace {

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "fit_noise.hpp"
-#include "grainlaw/model/packing_laws.hpp"
+#include "grainlaw/model/laws/packing_laws.hpp"
 
 namespace grainlaw::calibrate {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fit_noise.hpp"
-#include "grainlaw/model/saturation.hpp"
+#include "grainlaw/model/laws/saturation.hpp"
 
 namespace grainlaw::calibrate {
 namespace {

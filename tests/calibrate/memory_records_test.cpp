@@ -8,7 +8,7 @@
 #include "grainlaw/calibrate/memory_branches.hpp"
 #include "grainlaw/calibrate/memory_shear.hpp"
 #include "grainlaw/calibrate/memory_tables.hpp"
-#include "grainlaw/model/jamming_density.hpp"
+#include "grainlaw/model/laws/jamming_density.hpp"
 
 namespace grainlaw::calibrate {
 namespace {

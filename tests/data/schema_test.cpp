@@ -14,7 +14,7 @@
 #include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/element/record.hpp"
-#include "grainlaw/model/replay.hpp"
+#include "grainlaw/model/c/replay.hpp"
 
 namespace grainlaw::tests {
 namespace {

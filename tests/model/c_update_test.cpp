@@ -7,7 +7,7 @@
 
 #include "c_interface_fixture.hpp"
 #include "grainlaw/element/version.hpp"
-#include "grainlaw/model/replay.hpp"
+#include "grainlaw/model/c/replay.hpp"
 
 namespace grainlaw::model {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "grainlaw/model/light_law.hpp"
+#include "grainlaw/model/light/light_law.hpp"
 #include "grainlaw/model/start.hpp"
 #include "walks.hpp"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "checks.hpp"
-#include "grainlaw/model/coaxial.hpp"
+#include "grainlaw/model/c/coaxial.hpp"
 
 namespace grainlaw::model {
 

@@ -1,6 +1,6 @@
 // The law between tensors: stress along the axis, permuted and rotated frames, shear components, notations,
 // and what is refused.
-#include "grainlaw/model/coaxial.hpp"
+#include "grainlaw/model/c/coaxial.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Paths under two controls: what is prescribed is kept, strains agree with those of walks that prescribe
 // them, reversals and limits are found, and hard cases have a stated end.
-#include "grainlaw/model/controlled.hpp"
+#include "grainlaw/model/walk/controlled.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <map>
 #include <random>
 
-#include "grainlaw/model/steered.hpp"
+#include "grainlaw/model/walk/steered.hpp"
 #include "walks.hpp"
 
 namespace grainlaw::model {

@@ -1,9 +1,9 @@
 // Eq. 3.14: an independent integration, what sets it apart from Eq. 4.16, and its Jacobian.
-#include "grainlaw/model/coupled_3_14.hpp"
+#include "grainlaw/model/forms/coupled_3_14.hpp"
 
 #include <gtest/gtest.h>
 
-#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/forms/law.hpp"
 #include "walks.hpp"
 #include "written.hpp"
 

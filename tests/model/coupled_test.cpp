@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/forms/law.hpp"
 #include "walks.hpp"
 #include "written.hpp"
 

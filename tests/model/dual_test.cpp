@@ -1,6 +1,6 @@
 // Dual numbers: every operation against its difference quotient, and the edges where a derivative is
 // infinite.
-#include "grainlaw/model/dual.hpp"
+#include "grainlaw/model/walk/dual.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <limits>
 #include <map>
 
-#include "grainlaw/model/light_law.hpp"
-#include "grainlaw/model/point.hpp"
+#include "grainlaw/model/light/light_law.hpp"
 #include "grainlaw/model/start.hpp"
+#include "grainlaw/model/walk/point.hpp"
 #include "walks.hpp"
 
 namespace grainlaw::model {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "grainlaw/model/jamming_density.hpp"
+#include "grainlaw/model/laws/jamming_density.hpp"
 
 namespace grainlaw::model {
 namespace {

@@ -1,5 +1,5 @@
 // The integrator on problems with known solutions: accuracy, exact ends, events, failures, and reuse.
-#include "grainlaw/model/integrator.hpp"
+#include "grainlaw/model/walk/integrator.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

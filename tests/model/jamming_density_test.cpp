@@ -1,5 +1,5 @@
 // Eqs. 5.1 and 5.5 against their check numbers, and the inversion of the pressure law.
-#include "grainlaw/model/jamming_density.hpp"
+#include "grainlaw/model/laws/jamming_density.hpp"
 
 #include <gtest/gtest.h>
 

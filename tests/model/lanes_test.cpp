@@ -1,5 +1,5 @@
 // Eight lanes at once: functions against those of the C library, one by one.
-#include "grainlaw/model/lanes.hpp"
+#include "grainlaw/model/light/lanes.hpp"
 
 #include <gtest/gtest.h>
 

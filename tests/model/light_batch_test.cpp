@@ -1,6 +1,6 @@
 // A batch of points: the same answers as one by one, ordinary or not, on one thread or several, and failures
 // that name their point.
-#include "grainlaw/model/light_batch.hpp"
+#include "grainlaw/model/light/light_batch.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

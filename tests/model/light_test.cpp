@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "allocations.hpp"
-#include "grainlaw/model/light_law.hpp"
-#include "grainlaw/model/point.hpp"
+#include "grainlaw/model/light/light_law.hpp"
+#include "grainlaw/model/walk/point.hpp"
 #include "walks.hpp"
 
 namespace grainlaw::model {

@@ -1,14 +1,14 @@
 // The form with memory: over-compression by Eqs. 5.1 and 5.5, shear by its rate against a closed form and
 // Eq. 5.3, shear jamming and loss of contact at reversal, pressure that does not drift, and every integrator
 // on all of it.
-#include "grainlaw/model/memory.hpp"
+#include "grainlaw/model/forms/memory.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "grainlaw/model/light_law.hpp"
-#include "grainlaw/model/point.hpp"
+#include "grainlaw/model/light/light_law.hpp"
 #include "grainlaw/model/start.hpp"
+#include "grainlaw/model/walk/point.hpp"
 #include "walks.hpp"
 
 namespace grainlaw::model {

@@ -1,6 +1,6 @@
 // Moduli against the numbers that follow from Table 4.1, and B against the derivative of the law it comes
 // from.
-#include "grainlaw/model/moduli.hpp"
+#include "grainlaw/model/laws/moduli.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Packing laws against Table 2.1 and the numbers the thesis quotes from it.
-#include "grainlaw/model/packing_laws.hpp"
+#include "grainlaw/model/laws/packing_laws.hpp"
 
 #include <gtest/gtest.h>
 

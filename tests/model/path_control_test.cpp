@@ -1,6 +1,6 @@
 // Segments of a path as two quantities of the law: modes under stress control, mixes of axes, conditions that
 // end a segment, and what cannot be followed.
-#include "grainlaw/model/path_control.hpp"
+#include "grainlaw/model/walk/path_control.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // A material point through loss of contact and back, beyond what the laws admit, and against the tolerance it
 // was asked.
-#include "grainlaw/model/point.hpp"
+#include "grainlaw/model/walk/point.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

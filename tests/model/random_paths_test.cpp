@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "grainlaw/model/light_law.hpp"
-#include "grainlaw/model/point.hpp"
+#include "grainlaw/model/light/light_law.hpp"
+#include "grainlaw/model/walk/point.hpp"
 #include "walks.hpp"
 
 namespace grainlaw::model {

@@ -5,7 +5,7 @@
 #include <array>
 #include <boost/numeric/odeint.hpp>
 
-#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/forms/law.hpp"
 #include "walks.hpp"
 
 namespace grainlaw::model {

@@ -1,5 +1,5 @@
 // Eq. 2.20 against Table 2.2 and Fig. 4.14; Eqs. 2.17, 2.18 against their rate forms.
-#include "grainlaw/model/saturation.hpp"
+#include "grainlaw/model/laws/saturation.hpp"
 
 #include <gtest/gtest.h>
 

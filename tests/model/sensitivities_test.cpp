@@ -1,6 +1,6 @@
 // Sensitivities against central differences of predictions: through reversals, loss of contact and back, and
 // the vanishing of pressure; their error against the tolerance.
-#include "grainlaw/model/sensitivities.hpp"
+#include "grainlaw/model/walk/sensitivities.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

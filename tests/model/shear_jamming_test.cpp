@@ -1,6 +1,6 @@
 // Eqs. 5.2, 5.3 and 5.13 against numbers worked out by hand from the thesis's parameters, and against each
 // other.
-#include "grainlaw/model/shear_jamming.hpp"
+#include "grainlaw/model/laws/shear_jamming.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // The deviatoric fabric under change of volume: its closed form without shear, an independent integration,
 // and that it is off unless asked for.
-#include "grainlaw/model/volumetric.hpp"
+#include "grainlaw/model/laws/volumetric.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "grainlaw/model/law.hpp"
+#include "grainlaw/model/forms/law.hpp"
 #include "walks.hpp"
 #include "written.hpp"
 

@@ -11,8 +11,8 @@
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/record.hpp"
-#include "grainlaw/model/packing_laws.hpp"
-#include "grainlaw/model/saturation.hpp"
+#include "grainlaw/model/laws/packing_laws.hpp"
+#include "grainlaw/model/laws/saturation.hpp"
 
 namespace grainlaw::report::test {
 namespace {

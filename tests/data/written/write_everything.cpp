@@ -14,9 +14,9 @@
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/path.hpp"
+#include "grainlaw/model/c/replay.hpp"
 #include "grainlaw/model/parameters.hpp"
 #include "grainlaw/model/predict.hpp"
-#include "grainlaw/model/replay.hpp"
 #include "mutants.hpp"
 
 namespace {

@@ -1,0 +1,79 @@
+// The jamming density phi_J that an isotropic over-compression leaves behind (thesis Eqs. 5.1, 5.5), and the
+// one that a measured pressure implies (inversion of Eq. 5.9). Pure functions.
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <type_traits>
+
+#include "grainlaw/model/laws/packing_laws.hpp"
+
+namespace grainlaw::model {
+
+/// Numbers of Eqs. 5.1 and 5.5.
+template <class P>
+struct BasicOverCompression {
+  P phi_SJ = 0.5;     ///< shear-jamming density, the lowest phi_J
+  P mu = 1;           ///< number of cycles the memory takes to fill
+  P beta = 1;         ///< stretching of that exponential
+  P alpha_max = 0;    ///< strength of over-compression
+  P alpha_phi = 0.3;  ///< its exponent
+};
+using OverCompression = BasicOverCompression<double>;
+
+/// Eq. 5.5: phi_J after infinitely many compressions to phi_max,
+/// phi_SJ + alpha_max (phi_max/phi_SJ - 1)^alpha_phi; phi_SJ where phi_max <= phi_SJ.
+template <class P, class T>
+Meet<P, T> jamming_density_limit(const BasicOverCompression<P>& o, const T& phi_max) {
+  using std::pow;
+  if (phi_max <= o.phi_SJ) return o.phi_SJ;
+  return o.phi_SJ + o.alpha_max * pow(phi_max / o.phi_SJ - 1, o.alpha_phi);
+}
+
+/// Eq. 5.1: phi_J after M compressions to phi_max,
+/// phi_inf - (phi_inf - phi_SJ) exp[-(M/mu)^beta]. M = 0 is phi_SJ, M = 1 the first compression.
+template <class P, class T, class N>
+Meet<P, T> jamming_density_after(const BasicOverCompression<P>& o, const T& phi_max, const N& M) {
+  using std::expm1, std::pow;
+  const auto limit = jamming_density_limit(o, phi_max);
+  return o.phi_SJ - (limit - o.phi_SJ) * expm1(-pow(M / o.mu, o.beta));
+}
+
+/// Where `holds` turns from true to false between low and high.
+template <class Holds>
+double turning_point(double low, double high, Holds holds) {
+  for (int i = 0; i < 80; ++i) {
+    const double middle = 0.5 * (low + high);
+    (holds(middle) ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// The range of e = ln(nu/phi_J) over which Eq. 2.14 is inverted, from 0 up: to where P* has its maximum (a
+/// gamma_p > 0 gives it one, beyond e = 1/(2 gamma_p)), at most to 1.
+template <class P>
+double range_of_inversion(const BasicPressureCurve<P>& law) {
+  const auto rises = [&](double e) { return pressure_slope(law, P(law.nu_c * std::exp(e))) > 0; };
+  return rises(1) ? 1 : turning_point(0, 1, rises);
+}
+
+/// The phi_J for which the pressure law gives P* at nu, with_jamming_density() inverted. nu itself for P* =
+/// 0; nothing where P* is more than the law gives in range_of_inversion(). A Newton step after the bisection
+/// gives it its slopes.
+template <class P>
+std::optional<P> jamming_density_from_pressure(const BasicPressureCurve<P>& law,
+                                               const std::type_identity_t<P>& nu,
+                                               const std::type_identity_t<P>& pressure_) {
+  using std::exp;
+  if (pressure_ <= 0) return nu;
+  const auto at = [&](const P& e) { return P(law.nu_c * exp(e)); };
+  const auto too_little = [&](double e) { return pressure(law, at(e)) < pressure_; };
+  const double range = range_of_inversion(law);
+  if (too_little(range)) return std::nullopt;
+  P e = turning_point(0, range, too_little);
+  const double slope = value(pressure_slope(law, at(e)));
+  if (slope > 0) e = e - (pressure(law, at(e)) - pressure_) / slope;
+  return nu * exp(-e);
+}
+
+}  // namespace grainlaw::model

@@ -1,0 +1,126 @@
+#include "grainlaw/model/light/light_law.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::model {
+
+namespace {
+
+/// The solver of one piece without samples.
+constexpr auto no_sample = [] { return 2.0; };
+constexpr auto no_visit = [](const auto&...) {};
+
+template <class T>
+BasicHistory<T> with_slopes(const History& h) {
+  return {h.phi_H, h.phi_max, h.nu};
+}
+template <class T>
+BasicDirection<T> with_slopes(const Direction& d) {
+  return {d.q, d.S_I, d.S_F_I, d.s_0, d.F_0, d.eps_dev_0, with_slopes<T>(d.history), d.jammed};
+}
+template <class T>
+BasicState<T> with_slopes(const State& s) {
+  return {s.nu,
+          s.eps_vol,
+          s.eps_dev,
+          s.P,
+          s.sigma_dev,
+          s.F_dev,
+          s.phi_J,
+          s.jammed,
+          with_slopes<T>(s.direction),
+          with_slopes<T>(s.history),
+          s.memory};
+}
+
+}  // namespace
+
+LightLaw::LightLaw(Law law, Tolerance tolerance, LightMethod method)
+    : law_(std::move(law)), light_{tolerance, method} {
+  check(tolerance);
+}
+
+/// The increment of a point that stays jammed in its direction: no walk, no copy. False where it is not one.
+bool LightLaw::quick(State& state, const Stretch& stretch, LightCache* cache) const {
+  const auto* form = std::get_if<Coupled>(&law_);
+  if (!form || !state.jammed || stretch.q() != state.direction.q || stretch.eps_dev == 0) return false;
+  if (stretch.eps_vol != 0 && !(stretch.nu(1.0) > form->unjamming_density())) return false;
+  LightCache own;
+  LightCache& known = cache ? *cache : own;
+  if (known.nu != state.nu || known.law != this) known = {this, state.nu, form->coefficients(state.nu)};
+  const State before = state;
+  const Reached<double> reached = light_.run(*form, state, stretch, known.coefficients, no_sample, no_visit);
+  if (!reached.status.failed() && !reached.lost_pressure) return true;
+  state = before;
+  return false;
+}
+
+template <class T, class Visitor>
+Status LightLaw::walk_along(BasicState<T>& state, const BasicStretch<T>& stretch,
+                            std::span<const double> samples, const Visitor& visit) const {
+  if (Status status = admits(values_of(state), values_of(stretch)); status.failed()) return status;
+  BasicState<T> moved = state;
+  Status status = std::visit(
+      [&](const auto& form) {
+        return Walk(form, moved, Course<T>(stretch, samples), light_, visit,
+                    [](bool, const BasicState<T>&) {})
+            .run();
+      },
+      law_);
+  if (status.failed())
+    return {status.code, status.message + " (nu = " + shown(value(moved.nu)) +
+                             ", eps_dev = " + shown(value(moved.eps_dev)) + ")"};
+  state = moved;
+  return {};
+}
+
+Status LightLaw::admits(const State& state, const Stretch& stretch) const {
+  if (!is_finite(state))
+    return {Status::Code::failed,
+            "the state holds what is not a number: nu, P, sigma_dev, F_dev or its memory"};
+  if (!(state.memory >= 0 && state.memory <= 1))
+    return {Status::Code::failed, "the memory of shear must be in [0, 1], got " + shown(state.memory)};
+  if (!std::isfinite(stretch.eps_vol) || !std::isfinite(stretch.eps_dev))
+    return {Status::Code::failed, "the strain increment must be finite, got eps_vol = " +
+                                      shown(stretch.eps_vol) + ", eps_dev = " + shown(stretch.eps_dev)};
+  if (auto reason = objection(law_, stretch)) return {Status::Code::failed, *reason};
+  return {};
+}
+
+Status LightLaw::update(State& state, double eps_vol, double eps_dev, LightCache* cache) const {
+  const Stretch stretch{state.nu, eps_vol, eps_dev};
+  if (quick(state, stretch, cache)) return {};
+  if (eps_vol == 0 && eps_dev == 0) return admits(state, stretch);
+  return walk_along(state, stretch, {}, no_visit);
+}
+
+Status LightLaw::walk(State& state, double eps_vol, double eps_dev, std::span<const double> samples,
+                      const Visit& visit) const {
+  if (eps_vol == 0 && eps_dev == 0) {
+    for (std::size_t i = 0; i < samples.size(); ++i) visit(i, state);
+    return {};
+  }
+  return walk_along(state, Stretch{state.nu, eps_vol, eps_dev}, samples, visit);
+}
+
+Status LightLaw::update(State& state, double eps_vol, double eps_dev, Tangent& tangent) const {
+  using T = Dual<2>;
+  auto moved = with_slopes<T>(state);
+  const BasicStretch<T> stretch{state.nu, T(eps_vol, 0), T(eps_dev, 1)};
+  if (Status status = walk_along(moved, stretch, {}, no_visit); status.failed()) return status;
+  // At rest the tangent is that of the next, elastic, increment; nothing is forgotten.
+  if (eps_vol == 0 && eps_dev == 0) moved.direction = with_slopes<T>(state.direction);
+  for (std::size_t i = 0; i < 2; ++i) {
+    tangent.P[i] = moved.P.slope[i];
+    tangent.sigma_dev[i] = moved.sigma_dev.slope[i];
+    tangent.F_dev[i] = moved.F_dev.slope[i];
+  }
+  state = values_of(moved);
+  return {};
+}
+
+}  // namespace grainlaw::model
