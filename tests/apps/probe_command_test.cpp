@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/record.hpp"
 #include "program.hpp"
 
@@ -48,14 +49,14 @@ TEST_F(ProbeCommand, EveryFrameThatBearsLoad) {
 TEST_F(ProbeCommand, MoreColumnsByName) {
   ASSERT_EQ(run({"probe", "r/snapshots.h5", "-o", "plain.csv"}).status, 0);
   ASSERT_EQ(run({"probe", "r/snapshots.h5", "--amplitude", "1e-6", "--axis", "uni", "--undo", "--also",
-                 "waves,floppy,young", "--also", "symmetry,eigenvalues,young", "-o", "m.csv"})
+                 "waves,floppy,young,invariants", "--also", "symmetry,eigenvalues,young", "-o", "m.csv"})
                 .status,
             0);
   const std::vector<std::string> plain = Record::read_csv(folder / "plain.csv").columns();
-  const Record record = Record::read_csv(folder / "m.csv");
-  ASSERT_GT(record.columns().size(), plain.size());
+  const Record record = read_moduli(folder / "m.csv");
+  ASSERT_EQ(record.columns().size(), plain.size() + 8 + 6 + 10 + 9 + 21 + 1 + 4);
   EXPECT_TRUE(std::equal(plain.begin(), plain.end(), record.columns().begin()));
-  EXPECT_EQ(record.columns().back(), "floppy");
+  EXPECT_EQ(record.columns().back(), "G_oct_inv");
   EXPECT_EQ(record["floppy"][0], 0);
   EXPECT_LT(record["eigenvalue_1"][0], record["eigenvalue_6"][0]);
   // The largest belongs to nearly isotropic compression: 3 K.
@@ -66,6 +67,9 @@ TEST_F(ProbeCommand, MoreColumnsByName) {
   EXPECT_GT(record["Young_z"][0], 0);
   EXPECT_LT(std::abs(record["Poisson_xy"][0]), 1);
   EXPECT_LT(record["speed_xyz_1"][0], record["speed_xyz_3"][0]);
+  // sqrt(3 J2) of the whole tensor: more than lies along one axis, and its derivative less.
+  EXPECT_GE(std::abs(record["sigma_dev_inv"][0]), std::abs(record["sigma_dev"][0]));
+  EXPECT_GE(std::abs(record["F_dev_inv"][0]), std::abs(record["F_dev"][0]));
   EXPECT_TRUE(std::isnan(record["B_left"][0]));
   EXPECT_NEAR(record["B_left"][1], 0, 1e-2 * record["B"][0]);
   EXPECT_EQ(record["changed_by_volume"][1] + record["changed_by_shear"][1], record["contacts_changed"][1]);
@@ -78,8 +82,9 @@ TEST_F(ProbeCommand, BadInput) {
     return refuses(run(arguments), parts);
   };
   EXPECT_TRUE(refused({"-o", "m.csv", "--axis", "x"}, {"--axis: must be d2 (-1, 1, 0), d3", "got x"}));
-  EXPECT_TRUE(refused({"-o", "m.csv", "--also", "young,shear"},
-                      {"--also: must be eigenvalues, symmetry, young, waves or floppy, got shear"}));
+  EXPECT_TRUE(
+      refused({"-o", "m.csv", "--also", "young,shear"},
+              {"--also: must be eigenvalues, symmetry, young, waves, floppy or invariants, got shear"}));
   EXPECT_TRUE(refused({"-o", "m.csv", "--undo"}, {"--undo: must come with a strain to undo"}));
   EXPECT_TRUE(
       refused({"-o", "m.csv", "--amplitude", "0"}, {"--amplitude: must be a number >= 1e-09", "got 0"}));
