@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/static_packing.hpp"
 #include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/record.hpp"
+#include "grainlaw/element/tensor.hpp"
 #include "program.hpp"
 
 namespace grainlaw::apps {
@@ -76,6 +80,37 @@ TEST_F(ProbeCommand, MoreColumnsByName) {
   EXPECT_TRUE(std::isnan(record["floppy"][1]));
 }
 
+/// sqrt(3 J2) of the balanced packing, strained by d2 so that eps_dev is `shear` and eps_vol is `volume`.
+double deviator_at(const fs::path& snapshots, double shear, double volume) {
+  const Material material;
+  dem::StaticPacking packing(material,
+                             dem::read_frame(snapshots.string(), {.nu = {}, .frame = 2, .segment = {}}));
+  dem::MinimiseOptions options;
+  options.residual = 1e-11;
+  dem::minimise(packing, options);
+  const double x = shear / std::sqrt(3.0), v = volume / 3;
+  packing.deform(dem::Mat3::diagonal({std::exp(x - v), std::exp(-x - v), std::exp(-v)}) *
+                 packing.cell().edges());
+  dem::minimise(packing, options);
+  return deviator_magnitude(packing.measure().stress) / material.stress_unit();
+}
+
+TEST_F(ProbeCommand, InvariantsAgainstDifferences) {
+  ASSERT_EQ(run({"probe", "r/snapshots.h5", "--also", "invariants", "-o", "m.csv"}).status, 0);
+  const Record record = read_moduli(folder / "m.csv");
+  const fs::path snapshots = folder / "r/snapshots.h5";
+  constexpr double h = 1e-6;
+  const double q = deviator_at(snapshots, 0, 0), sign = record["sigma_dev"][1] < 0 ? -1 : 1;
+  EXPECT_NEAR(record["sigma_dev_inv"][1], sign * q, 1e-9);
+  EXPECT_NEAR(record["G_oct_inv"][1],
+              sign * (deviator_at(snapshots, h, 0) - deviator_at(snapshots, -h, 0)) / (2 * h),
+              1e-4 * record["B"][1]);
+  EXPECT_NEAR(record["A2_inv"][1],
+              sign * (deviator_at(snapshots, 0, h) - deviator_at(snapshots, 0, -h)) / (2 * h),
+              1e-4 * record["B"][1]);
+  EXPECT_GT(std::abs(record["G_oct_inv"][1] - record["G_oct"][1]), 1e-2 * record["B"][1]);
+}
+
 TEST_F(ProbeCommand, BadInput) {
   const auto refused = [&](Arguments arguments, const std::vector<std::string>& parts) {
     arguments.insert(arguments.begin(), {"probe", "r/snapshots.h5"});
@@ -92,6 +127,8 @@ TEST_F(ProbeCommand, BadInput) {
                       {"--amplitude: must be at least 1000 times the residual, which is 0.001; got 1e-6"}));
   EXPECT_TRUE(refused({"-o", "no/m.csv"}, {"-o: must lie in a directory that exists, got no/m.csv"}));
   EXPECT_TRUE(refused({"-o", "r/scene.json"}, {"-o", "r/scene.json"}));
+  EXPECT_TRUE(refuses(run({"probe", "r", "-o", "m.csv"}),
+                      {"r: is a directory; the snapshots of a record are its snapshots.h5"}));
   EXPECT_TRUE(refuses(run({"probe", "no.h5", "-o", "m.csv"}), {"no.h5: no such file"}));
   EXPECT_FALSE(fs::exists(folder / "m.csv"));
 }
