@@ -103,10 +103,26 @@ std::vector<double> invariant_columns(const Solid& solid) {
           derivative(volume), derivative(shear)};
 }
 
+/// The four moduli, were the grains to go along with the strain and no more.
+std::vector<double> affine_columns(const Solid& solid) {
+  const dem::Moduli m =
+      dem::moduli_of(dem::derivative_of_stress(solid.response.affine, solid.response.prestress), solid.axis);
+  return {m.B / solid.k_star, m.A1 / solid.k_star, m.A2 / solid.k_star, m.G_oct / solid.k_star};
+}
+
+std::vector<double> stress_columns(const Solid& solid) {
+  std::vector<double> list;
+  for (const double component : solid.response.prestress) list.push_back(component / solid.k_star);
+  for (const Sym6& row : solid.response.stress)
+    for (const double derivative : row) list.push_back(derivative / solid.k_star);
+  return list;
+}
+
 /// In the order of elastic_groups().
 using Values = std::vector<double> (*)(const Solid&);
-constexpr std::array<Values, 6> values_of{eigenvalue_columns, symmetry_columns, young_columns,
-                                          wave_columns,       floppy_columns,   invariant_columns};
+constexpr std::array<Values, 8> values_of{eigenvalue_columns, symmetry_columns, young_columns,
+                                          wave_columns,       floppy_columns,   invariant_columns,
+                                          affine_columns,     stress_columns};
 
 }  // namespace
 
@@ -117,8 +133,9 @@ ElasticColumns::ElasticColumns(const std::vector<std::string>& wanted) {
     const auto group =
         std::find_if(groups.begin(), groups.end(), [&](const ElasticGroup& g) { return g.name == name; });
     if (group == groups.end())
-      throw Error("", "--also",
-                  "must be eigenvalues, symmetry, young, waves, floppy or invariants, got " + name);
+      throw Error(
+          "", "--also",
+          "must be eigenvalues, symmetry, young, waves, floppy, invariants, affine or stress, got " + name);
     chosen.insert(static_cast<std::size_t>(group - groups.begin()));
   }
   wanted_.assign(chosen.begin(), chosen.end());

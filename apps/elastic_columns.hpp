@@ -14,7 +14,7 @@ namespace grainlaw::apps {
 /// Only what is asked for is computed.
 class ElasticColumns {
  public:
-  /// `wanted`: of eigenvalues, symmetry, young, waves, floppy, invariants. Throws Error for any other name.
+  /// `wanted`: of the names of elastic_groups(). Throws Error for any other.
   explicit ElasticColumns(const std::vector<std::string>& wanted);
 
   std::vector<std::string> names() const;

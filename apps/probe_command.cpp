@@ -210,9 +210,9 @@ Action add_probe(CLI::App& program) {
       ->type_name("MODE");
   command->add_flag("--undo", arguments->undo, "take each strain back, too, and say what is left of it");
   command
-      ->add_option(
-          "--also", arguments->also,
-          "more columns: eigenvalues, symmetry, young, waves, floppy, invariants; separated by commas")
+      ->add_option("--also", arguments->also,
+                   "more columns: eigenvalues, symmetry, young, waves, floppy, invariants, affine, stress; "
+                   "separated by commas")
       ->type_name("NAMES")
       ->delimiter(',')
       ->allow_extra_args(false);

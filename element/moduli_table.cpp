@@ -34,6 +34,15 @@ std::vector<std::string> wave_columns() {
   return list;
 }
 
+/// Stress in balance, and its 36 derivatives, which have no symmetry.
+std::vector<std::string> stress_columns() {
+  std::vector<std::string> list;
+  for (const char* a : components) list.push_back(std::string("sigma_") + a);
+  for (const char* a : components)
+    for (const char* b : components) list.push_back(std::string("S_") + a + "_" + b);
+  return list;
+}
+
 bool is_in(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -84,7 +93,9 @@ const std::vector<ElasticGroup>& elastic_groups() {
       {"young", young_columns()},
       {"waves", wave_columns()},
       {"floppy", {"floppy"}},
-      {"invariants", {"sigma_dev_inv", "F_dev_inv", "A2_inv", "G_oct_inv"}}};
+      {"invariants", {"sigma_dev_inv", "F_dev_inv", "A2_inv", "G_oct_inv"}},
+      {"affine", {"B_affine", "A1_affine", "A2_affine", "G_oct_affine"}},
+      {"stress", stress_columns()}};
   return groups;
 }
 

@@ -22,7 +22,7 @@ struct ElasticGroup {
   std::string name;
   std::vector<std::string> columns;
 };
-/// All of them: eigenvalues, symmetry, young, waves, floppy, invariants.
+/// All of them: eigenvalues, symmetry, young, waves, floppy, invariants, affine, stress.
 const std::vector<ElasticGroup>& elastic_groups();
 
 /// Reads one, with or without the columns of --undo and --also. Throws Error (file, column) for a column that

@@ -53,14 +53,15 @@ TEST_F(ProbeCommand, EveryFrameThatBearsLoad) {
 TEST_F(ProbeCommand, MoreColumnsByName) {
   ASSERT_EQ(run({"probe", "r/snapshots.h5", "-o", "plain.csv"}).status, 0);
   ASSERT_EQ(run({"probe", "r/snapshots.h5", "--amplitude", "1e-6", "--axis", "uni", "--undo", "--also",
-                 "waves,floppy,young,invariants", "--also", "symmetry,eigenvalues,young", "-o", "m.csv"})
+                 "waves,floppy,young,invariants,affine,stress", "--also", "symmetry,eigenvalues,young", "-o",
+                 "m.csv"})
                 .status,
             0);
   const std::vector<std::string> plain = Record::read_csv(folder / "plain.csv").columns();
   const Record record = read_moduli(folder / "m.csv");
-  ASSERT_EQ(record.columns().size(), plain.size() + 8 + 6 + 10 + 9 + 21 + 1 + 4);
+  ASSERT_EQ(record.columns().size(), plain.size() + 8 + 6 + 10 + 9 + 21 + 1 + 4 + 4 + 42);
   EXPECT_TRUE(std::equal(plain.begin(), plain.end(), record.columns().begin()));
-  EXPECT_EQ(record.columns().back(), "G_oct_inv");
+  EXPECT_EQ(record.columns().back(), "S_xy_xy");
   EXPECT_EQ(record["floppy"][0], 0);
   EXPECT_LT(record["eigenvalue_1"][0], record["eigenvalue_6"][0]);
   // The largest belongs to nearly isotropic compression: 3 K.
@@ -71,6 +72,14 @@ TEST_F(ProbeCommand, MoreColumnsByName) {
   EXPECT_GT(record["Young_z"][0], 0);
   EXPECT_LT(std::abs(record["Poisson_xy"][0]), 1);
   EXPECT_LT(record["speed_xyz_1"][0], record["speed_xyz_3"][0]);
+  EXPECT_GT(record["B_affine"][0], record["B"][0]);  // bounds
+  EXPECT_GT(record["G_oct_affine"][0], record["G_oct"][0]);
+  EXPECT_NEAR((record["sigma_xx"][0] + record["sigma_yy"][0] + record["sigma_zz"][0]) / 3, record["P"][0],
+              1e-9);
+  double bulk = 0;
+  for (const char* a : {"xx", "yy", "zz"})
+    for (const char* b : {"xx", "yy", "zz"}) bulk += record[std::string("S_") + a + "_" + b][0] / 9;
+  EXPECT_NEAR(bulk, record["B"][0], 1e-12);
   // sqrt(3 J2) of the whole tensor: more than lies along one axis, and its derivative less.
   EXPECT_GE(std::abs(record["sigma_dev_inv"][0]), std::abs(record["sigma_dev"][0]));
   EXPECT_GE(std::abs(record["F_dev_inv"][0]), std::abs(record["F_dev"][0]));
@@ -117,9 +126,9 @@ TEST_F(ProbeCommand, BadInput) {
     return refuses(run(arguments), parts);
   };
   EXPECT_TRUE(refused({"-o", "m.csv", "--axis", "x"}, {"--axis: must be d2 (-1, 1, 0), d3", "got x"}));
-  EXPECT_TRUE(
-      refused({"-o", "m.csv", "--also", "young,shear"},
-              {"--also: must be eigenvalues, symmetry, young, waves, floppy or invariants, got shear"}));
+  EXPECT_TRUE(refused({"-o", "m.csv", "--also", "young,shear"},
+                      {"--also: must be eigenvalues, symmetry, young, waves, floppy, invariants, affine or "
+                       "stress, got shear"}));
   EXPECT_TRUE(refused({"-o", "m.csv", "--undo"}, {"--undo: must come with a strain to undo"}));
   EXPECT_TRUE(
       refused({"-o", "m.csv", "--amplitude", "0"}, {"--amplitude: must be a number >= 1e-09", "got 0"}));
