@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "grainlaw/element/error.hpp"
@@ -54,6 +55,17 @@ bool is_known(const std::string& name) {
                      [&](const ElasticGroup& group) { return is_in(group.columns, name); });
 }
 
+/// Over k*, as stresses: beyond that a number is no modulus.
+void check_sizes(const Record& record, const std::string& file) {
+  constexpr double largest = 1000;
+  for (const char* modulus : {"B", "A1", "A2", "G_oct"})
+    for (std::size_t row = 0; row < record.rows(); ++row)
+      if (std::abs(record[modulus][row]) > largest)
+        throw Error(file, modulus,
+                    "line " + std::to_string(row + 2) + ": must be in [-1000, 1000], got " +
+                        to_text(record[modulus][row]));
+}
+
 std::string rounded(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value);
@@ -104,6 +116,7 @@ Record read_moduli(const std::filesystem::path& file) {
   for (const std::string& name : record.columns())
     if (!is_known(name))
       throw Error(file.string(), name, "is no column of a table of moduli (docs/formats.md lists them)");
+  check_sizes(record, file.string());
   return record;
 }
 
