@@ -128,7 +128,13 @@ TEST(Schema, ColumnsOfTheTablesOfMemory) {
             calibrate::shear_jamming_table({}).columns());
 }
 
-TEST(Schema, ColumnsOfATableOfModuli) { EXPECT_EQ(keys(schema("moduli")["properties"]), moduli_columns()); }
+TEST(Schema, ColumnsOfATableOfModuli) {
+  std::vector<std::string> columns = moduli_columns();
+  columns.insert(columns.end(), undo_columns().begin(), undo_columns().end());
+  for (const ElasticGroup& group : elastic_groups())
+    columns.insert(columns.end(), group.columns.begin(), group.columns.end());
+  EXPECT_EQ(keys(schema("moduli")["properties"]), columns);
+}
 
 TEST(Schema, ColumnsOfARecord) {
   const Json file = schema("record");
