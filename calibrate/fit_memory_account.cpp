@@ -203,6 +203,40 @@ Json agreement(const std::vector<ShearJamming>& runs, JamSign sign) {
           {"deviation", n > 1 ? Json(std::sqrt(square / (n - 1))) : Json(nullptr)}};
 }
 
+Json estimate_json(const Estimate& e) {
+  return {{"value", number_or_null(e.value)}, {"stderr", number_or_null(e.error)}};
+}
+
+Json relaxed_json(const Account& account) {
+  Json out{{"steady_states", account.relaxed_limit.states},
+           {"pressure", estimate_json(account.relaxed_limit.by_pressure)},
+           {"shear_stress", estimate_json(account.relaxed_limit.by_shear_stress)}};
+  for (const char* key : {"phi_J0", "nu", "eps_dev", "P_flow", "P", "s_dev", "C"}) out[key] = Json::array();
+  for (const RelaxedState& s : account.relaxed) {
+    out["phi_J0"].push_back(s.phi_J0.value);
+    out["nu"].push_back(s.nu);
+    out["eps_dev"].push_back(s.eps_dev);
+    out["P_flow"].push_back(s.P_flow);
+    out["P"].push_back(s.P);
+    out["s_dev"].push_back(number_or_null(s.s_dev));
+    out["C"].push_back(s.C);
+  }
+  return out;
+}
+
+Json tapped_json(const std::vector<TappedDensity>& packings) {
+  Json out;
+  for (const char* key : {"phi_max", "nu", "amplitude", "strain", "phi_J"}) out[key] = Json::array();
+  for (const TappedDensity& t : packings) {
+    out["phi_max"].push_back(t.phi_max);
+    out["nu"].push_back(t.density.phi_max);
+    out["amplitude"].push_back(t.amplitude);
+    out["strain"].push_back(t.strain);
+    out["phi_J"].push_back(number_or_null(t.density.from_P.value));
+  }
+  return out;
+}
+
 }  // namespace
 
 void fit_memory_of(Account& account, const RecordFolder& folder, const Reference& reference,
@@ -231,7 +265,8 @@ void fit_memory_of(Account& account, const RecordFolder& folder, const Reference
   }
 }
 
-Json memory_json(const MemoryFit& fit, const std::vector<ShearJamming>& runs, const RelaxedLimit& relaxed) {
+Json memory_json(const Account& account) {
+  const MemoryFit& fit = *account.memory;
   Json growth = Json::array(), entangled = Json::array();
   for (const GrowthComparison& g : fit.growth)
     growth.push_back({{"law", name_of(g.growth)},
@@ -242,21 +277,18 @@ Json memory_json(const MemoryFit& fit, const std::vector<ShearJamming>& runs, co
   for (const Entanglement& e : fit.entangled)
     entangled.push_back(
         {{"parameters", {e.first, e.second}}, {"correlation", number_or_null(e.correlation)}});
-  const auto pair = [](const Estimate& e) {
-    return Json{{"value", number_or_null(e.value)}, {"stderr", number_or_null(e.error)}};
-  };
   return {{"phi_SJ",
-           {{"over_compression", pair(fit.phi_SJ.by_over_compression)},
-            {"shear", pair(fit.phi_SJ.by_shear)},
+           {{"over_compression", estimate_json(fit.phi_SJ.by_over_compression)},
+            {"shear", estimate_json(fit.phi_SJ.by_shear)},
             {"value", number_or_null(fit.phi_SJ.value)},
             {"stderr", number_or_null(fit.phi_SJ.error)}}},
-          {"relaxed",
-           {{"states", relaxed.states},
-            {"pressure", pair(relaxed.by_pressure)},
-            {"shear_stress", pair(relaxed.by_shear_stress)}}},
+          {"relaxed", relaxed_json(account)},
+          {"tapped", tapped_json(account.tapped)},
           {"growth", growth},
           {"entangled", entangled},
-          {"agreement", {agreement(runs, JamSign::percolation), agreement(runs, JamSign::pressure)}}};
+          {"agreement",
+           {agreement(account.shear_jammings, JamSign::percolation),
+            agreement(account.shear_jammings, JamSign::pressure)}}};
 }
 
 }  // namespace grainlaw::calibrate

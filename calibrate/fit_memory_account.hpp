@@ -15,7 +15,8 @@ void fit_memory_of(Account& account, const RecordFolder& folder, const Reference
                    const Selection& selection);
 
 /// What stands under `memory` in fits.json: the growth laws compared, which parameters are entangled, how far
-/// the signs of jamming agree, and phi_SJ of the relaxed steady states.
-Json memory_json(const MemoryFit& fit, const std::vector<ShearJamming>& runs, const RelaxedLimit& relaxed);
+/// the signs of jamming agree, the relaxed states with the phi_SJ of the steady ones, and the tapped packings.
+/// account.memory must be there.
+Json memory_json(const Account& account);
 
 }  // namespace grainlaw::calibrate
