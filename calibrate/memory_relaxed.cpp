@@ -10,7 +10,8 @@ namespace grainlaw::calibrate {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double gamma_p_error = 0.1;  // Table 5.1: gamma_p = 0 +- 0.1
+constexpr double gamma_p_error = 0.1;   // Table 5.1: gamma_p = 0 +- 0.1
+constexpr double nu_resolution = 5e-4;  ///< volume fractions closer than this count as one
 
 std::optional<std::size_t> last_row_of(const TestRecord& test, std::size_t leg) {
   const std::vector<double>& segment = test.rows["segment"];
@@ -52,7 +53,7 @@ Estimate vanishing(const std::vector<RelaxedState>& states,
   }
   if (series.empty()) return {};
   FitProblem problem = pressure_problem(series, Points::rows, {});
-  problem.x_resolution = 5e-4;  // volume fractions of the campaigns are further apart
+  problem.x_resolution = nu_resolution;
   FitParameter& gamma_p = problem.parameters[1];
   gamma_p.held = true;
   gamma_p.initial = 0;
@@ -89,7 +90,14 @@ std::vector<RelaxedState> relaxed_states(const TestRecord& test, const CycleDens
 RelaxedLimit relaxed_limit(const std::vector<RelaxedState>& states, const Selection& selection) {
   std::vector<RelaxedState> steady;
   for (const RelaxedState& s : states)
-    if (std::abs(s.eps_dev) >= steady_strain && s.P >= selection.P_min) steady.push_back(s);
+    if (std::abs(s.eps_dev) >= steady_strain) steady.push_back(s);
+  const std::vector<RelaxedState> all = steady;
+  const auto idle = [&](const RelaxedState& other) { return other.P < selection.P_min; };
+  std::erase_if(steady, [&](const RelaxedState& s) {
+    return std::any_of(all.begin(), all.end(), [&](const RelaxedState& other) {
+      return idle(other) && std::abs(other.nu - s.nu) < nu_resolution;
+    });
+  });
   RelaxedLimit out;
   out.states = steady.size();
   out.by_pressure = vanishing(steady, [](const RelaxedState& s) { return s.P; });

@@ -35,10 +35,11 @@ std::vector<RelaxedState> relaxed_states(const TestRecord& test, const CycleDens
 inline constexpr double steady_strain = 0.18;
 
 /// phi_SJ where P, and where the shear stress of the relaxed steady states vanishes, extrapolated linearly
-/// over phi C as Eq. 5.4 does: p/(phi C) = (p0/phi_SJ) ln(phi/phi_SJ), with a slope of its own for each.
+/// over phi C as Eq. 5.4 does: p/(phi C) = (p0/phi_SJ) ln(phi/phi_SJ), with a slope of its own for each. Of
+/// volume fractions at which all of these states push: where some do not, those that do are no fair sample.
 struct RelaxedLimit {
   Estimate by_pressure, by_shear_stress;
-  std::size_t states = 0;  ///< that entered: steady, with P >= P_min
+  std::size_t states = 0;  ///< that entered: steady, P >= P_min at their volume fraction
 };
 RelaxedLimit relaxed_limit(const std::vector<RelaxedState>& states, const Selection& selection);
 

@@ -86,6 +86,11 @@ TEST(RelaxedLimit, IsWhereTheLawOfTheStatesVanishes) {
   states.push_back(states.front());
   states.back().eps_dev = 0.1;  // not steady: its stresses say nothing
   states.back().P *= 0.3;
+  for (const double P : {4e-4, 0.0}) {  // at the edge: one of two pushes, by chance
+    states.push_back(states.front());
+    states.back().nu = 0.6575;
+    states.back().P = P;
+  }
   const RelaxedLimit limit = relaxed_limit(states, {});
   EXPECT_EQ(limit.states, 4u);
   EXPECT_NEAR(limit.by_pressure.value, 0.6567, 1e-8);
