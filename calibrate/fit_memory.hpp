@@ -65,15 +65,15 @@ FitProblem shear_jamming_problem(const std::vector<ShearJamming>& runs, const Kn
 FitProblem reversal_problem(const std::vector<ShearJamming>& runs, const KnownValue& phi_SJ,
                             const KnownValue& alpha, const KnownValues& known);
 
-/// phi_SJ: one number for all laws, the weighted mean of what over-compression and shear say of it, each by
-/// itself; that of the thesis where neither does.
+/// phi_SJ: one number for all laws, the weighted mean of what over-compression, the strains that jam and
+/// relaxed steady states say of it, each by itself; that of the thesis where none does.
 struct LimitDensity {
   double value = 0, error = 0;
-  Estimate by_over_compression, by_shear;  ///< unknown where not determined
-  bool found() const { return by_over_compression.known() || by_shear.known(); }
+  Estimate by_over_compression, by_shear, by_rest;  ///< unknown where not determined
+  bool found() const { return by_over_compression.known() || by_shear.known() || by_rest.known(); }
 };
 
-/// Group memory. Where shear tells phi_SJ, the fits stand at the common one, held with its error.
+/// Group memory. Where shear or rest tells phi_SJ, the fits stand at the common one, held with its error.
 struct MemoryFit {
   LimitDensity phi_SJ;
   FitResult over_compression, shear, reversal;
@@ -82,8 +82,9 @@ struct MemoryFit {
   std::vector<Entanglement> entangled;  ///< of over_compression with phi_SJ free
 };
 
-/// All of them; never throws for want of data, see FitEstimate::determined.
+/// All of them; never throws for want of data, see FitEstimate::determined. `at_rest` is phi_SJ of relaxed
+/// steady states (memory_relaxed.hpp), unknown where there are none.
 MemoryFit fit_memory(const std::vector<CycleDensity>& cycles, const std::vector<ShearJamming>& runs,
-                     const KnownValues& known);
+                     const KnownValues& known, const Estimate& at_rest = {});
 
 }  // namespace grainlaw::calibrate

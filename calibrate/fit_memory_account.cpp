@@ -253,7 +253,8 @@ void fit_memory_of(Account& account, const RecordFolder& folder, const Reference
   read_tapped(account, folder, laws, selection);
   read_shear(account, folder, selection);
   account.relaxed_limit = relaxed_limit(account.relaxed, selection);
-  account.memory = fit_memory(account.cycles, account.shear_jammings, reference.memory_values());
+  account.memory = fit_memory(account.cycles, account.shear_jammings, reference.memory_values(),
+                              account.relaxed_limit.by_pressure);
   for (FitEntry entry :
        {over_compression_entry(*account.memory, account, selection), shear_entry(*account.memory, selection),
         reversal_entry(*account.memory, selection)}) {
@@ -280,6 +281,7 @@ Json memory_json(const Account& account) {
   return {{"phi_SJ",
            {{"over_compression", estimate_json(fit.phi_SJ.by_over_compression)},
             {"shear", estimate_json(fit.phi_SJ.by_shear)},
+            {"rest", estimate_json(fit.phi_SJ.by_rest)},
             {"value", number_or_null(fit.phi_SJ.value)},
             {"stderr", number_or_null(fit.phi_SJ.error)}}},
           {"relaxed", relaxed_json(account)},
