@@ -19,6 +19,7 @@ constexpr double nu_resolution = 5e-4;
 /// the lowest by this share.
 constexpr double off_phi_SJ = 1e-4;
 constexpr int starts = 24;
+constexpr double most_loose = 0.1;
 constexpr std::size_t fewest_cycles = 3;  // of a record that says how it grows
 
 /// Share of the limit after M cycles: 0 for M = 0, where a power of M has no derivative.
@@ -58,10 +59,21 @@ struct ReversalLaw {  // phi_SJ, alpha, eps0_R, phi_cr
   }
 };
 
+/// Whether too many cycles to this volume fraction leave a packing that does not jam there.
+bool often_loose(const std::vector<CycleDensity>& cycles, double phi_max) {
+  double all = 0, loose = 0;
+  for (const CycleDensity& c : cycles) {
+    if (std::abs(c.phi_max - phi_max) > nu_resolution) continue;
+    all += 1;
+    loose += c.from_P.known() ? 0 : 1;
+  }
+  return loose > most_loose * all;
+}
+
 std::vector<FitSeries> series_of(const std::vector<CycleDensity>& cycles) {
   std::vector<FitSeries> series;
   for (const CycleDensity& c : cycles) {
-    if (!c.from_P.known()) continue;
+    if (!c.from_P.known() || often_loose(cycles, c.phi_max)) continue;
     if (series.empty() || series.back().test != c.test) series.push_back({c.test, c.group, {}});
     series.back().points.push_back({c.phi_max, c.from_P.value, c.M, 0});
   }

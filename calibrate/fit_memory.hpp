@@ -27,7 +27,8 @@ double grown(Growth growth, double M, double mu, double beta);
 
 /// phi_J = phi_SJ + alpha_max (phi_max/phi_SJ - 1)^alpha_phi {1 - exp[-(M/mu)^beta]} (Eqs. 5.1, 5.5; another
 /// growth in place of the braces) over phi_max, with M as the known. Parameters phi_SJ, alpha_max, alpha_phi,
-/// mu, beta. One series per record, cycle after cycle; cycles without a phi_J are left out. phi_SJ stays
+/// mu, beta. One series per record, cycle after cycle; cycles without a phi_J are left out, and with
+/// them all of an amplitude where they are more than a tenth: those that jam are no fair sample. phi_SJ stays
 /// below every phi_max and phi_J of the data, where the slope by it is finite.
 FitProblem over_compression_problem(const std::vector<CycleDensity>& cycles, Growth growth,
                                     const KnownValues& known);
