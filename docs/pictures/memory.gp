@@ -32,11 +32,11 @@ plot for [i=1:n] cycles using "M":(at(word(amplitudes, i) + 0.0, column("phi_J")
      for [i=1:n] ours(word(amplitudes, i) + 0.0, x) lc rgb word(colours, i) lw 1.5
 
 set label 1 "N = 9261"
-set xrange [0.9:60]; set yrange [0.6585:0.6695]
+set xrange [0.9:60]; set yrange [0.656:0.6695]
 set key inside bottom right maxrows 4
 large = data . "/over_compression-9261.csv"
 plot large using "M":(at(0.82, column("phi_J"))) with linespoints pt 7 lc rgb "#a0da39" title "φ_{max} = 0.82", \
-     large using "M":(at(0.68, column("phi_J"))) with linespoints pt 7 lc rgb blue title "0.68", \
+     for [seed=1:2] large using "M":(column("seed") == seed ? at(0.68, column("phi_J")) : NaN) with linespoints pt 7 lc rgb blue title (seed == 1 ? "0.68, two packings" : ""), \
      ours(0.82, x) lc rgb red title "law", ours(0.68, x) lc rgb red, \
      theirs(0.82, x) dt 2 lc "black" title "thesis", theirs(0.68, x) dt 2 lc "black"
 
@@ -79,7 +79,7 @@ pushes = 2e-4
 unjammed(y) = column("P_flow") < pushes && column("P") < pushes ? y : NaN
 fragile(y) = column("P_flow") >= pushes && column("P") < pushes ? y : NaN
 jammed(y) = column("P") >= pushes ? y : NaN
-set xrange [0.654:0.669]; set yrange [0:0.45]; set xtics 0.004
+set xrange [0.654:0.669]; set yrange [0:0.52]; set xtics 0.004
 set xlabel "volume fraction φ"; set ylabel "strain ε_{dev} of first shear"
 set key inside top right maxrows 8
 line(phi, SJ, J0, a, e) = phi > SJ && phi < J0 ? e*(-log((phi - SJ)/(J0 - SJ)))**(1/a) : NaN
