@@ -13,6 +13,7 @@ namespace grainlaw::report {
 namespace {
 
 constexpr double pushes = 2e-4;  ///< P* of a packing that counts as jammed, as the fits have it
+constexpr double steady = 0.18;  ///< strain from which a state counts as steady, likewise
 constexpr std::size_t line_points = 80;
 
 struct Rests {
@@ -84,11 +85,11 @@ Panel phases_panel(const Rests& rests, const std::vector<FitView>& fits, Area ar
 
 /// Figs. 5.12a and c, over the contacts.
 Panel rest_panel(const Rests& rests, Area area) {
-  Panel panel{area, "", axis_label("nu", ""), "stress at rest over {/:Italic νC} (–)", {}, {}, {}};
+  Panel panel{area, "", axis_label("nu", ""), "steady stress at rest over {/:Italic νC} (–)", {}, {}, {}};
   Series pressure{"P/(νC)", Draw::dots, nth_colour(0), {}, {}},
       shear{"|σ_dev|/(νC)", Draw::dots, nth_colour(1), {}, {}};
   for (std::size_t i = 0; i < rests.size(); ++i) {
-    if (rests.P[i] < pushes || !(rests.C[i] > 0)) continue;
+    if (std::abs(rests.eps_dev[i]) < steady || rests.P[i] < pushes || !(rests.C[i] > 0)) continue;
     const double contacts = rests.nu[i] * rests.C[i];
     pressure.x.push_back(rests.nu[i]);
     pressure.y.push_back(rests.P[i] / contacts);

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "fit_fixture.hpp"
+#include "grainlaw/calibrate/fit_account.hpp"
 #include "grainlaw/calibrate/memory_tables.hpp"
 #include "grainlaw/model/laws/jamming_density.hpp"
 
@@ -134,6 +136,69 @@ TEST(Tapped, RemembersTheLargestVolumeFraction) {
   EXPECT_NEAR(largest_nu(test, 0), 0.7, 1e-12);
   EXPECT_NEAR(largest_nu(test, 1), 0.7, 1e-12);
   EXPECT_NEAR(largest_nu(test, 2), 0.8, 1e-12);
+}
+
+/// Rows of a leg at the law, over nu for iso, at a constant P for d2 and for a rest.
+void add_rows(TestRecord& test, std::size_t leg, int rows) {
+  for (int i = 1; i <= rows; ++i) {
+    const auto between = [&](const double* range) {
+      return range[0] + (range[1] - range[0]) * i / rows;
+    };
+    const double eps_vol = between(test.legs[leg].eps_vol), nu = test.nu_start * std::exp(eps_vol);
+    const bool jams = nu > 0.6567;
+    test.rows.append({static_cast<double>(leg), eps_vol, between(test.legs[leg].eps_dev), nu,
+                      model::pressure(law, nu), jams ? 0.2 : std::nan(""),
+                      jams ? model::coordination(law.contacts, nu) : 0,
+                      jams ? model::corrected_coordination(law.contacts, nu) : std::nan(""),
+                      jams ? 1 - model::rattlers(law.contacts, nu) : 0, 3});
+  }
+}
+
+TestRecord whole_record(const std::string& name, const std::string& segments, const std::string& mode,
+                        double nu_start, const std::optional<RecordOrigin>& from) {
+  TestRecord test = record_of(segments, mode, nu_start);
+  test.name = test.test = name;
+  test.from = from;
+  for (std::size_t leg = 0; leg < test.legs.size(); ++leg)
+    add_rows(test, leg, test.legs[leg].mode == Mode::relax ? 1 : 100);
+  return test;
+}
+
+/// Which record of role memory is read as what.
+TEST(MemoryAccount, TellsCyclesShearRestsAndTapsApart) {
+  RecordFolder folder;
+  folder.tests = {
+      whole_record(
+          "oc", R"([{"mode": "iso", "controls": {"nu": 0.82}}, {"mode": "iso", "controls": {"nu": 0.64}}])",
+          "iso", 0.64, std::nullopt),
+      whole_record("shear", R"([{"mode": "d2", "controls": {"eps_dev": 0.2}}])", "d2", 0.66,
+                   RecordOrigin{"oc", 1}),
+      whole_record("rests", stopped_twice, "d2", 0.66, RecordOrigin{"oc", 1}),
+      whole_record("taps", R"([{"mode": "d2", "amount": 0.01}, {"mode": "d2", "amount": -0.01}])", "d2", 0.68,
+                   RecordOrigin{"oc", 1}),
+      whole_record("back", R"([{"mode": "iso", "controls": {"nu": 0.64}}])", "iso", 0.68,
+                   RecordOrigin{"taps", 1}),
+      whole_record("astray", R"([{"mode": "iso", "controls": {"nu": 0.64}}])", "iso", 0.68,
+                   RecordOrigin{"gone", 0})};
+  for (TestRecord* sheared : {&folder.tests[4], &folder.tests[5]}) sheared->sheared_along = StrainTensor{};
+  const Account account =
+      fit_all(folder, Reference(model::ParameterSet::load(thesis_file()), folder.tests[0].material), {});
+  ASSERT_EQ(account.cycles.size(), 1u);
+  EXPECT_EQ(account.cycles[0].test, "oc");
+  ASSERT_EQ(account.shear_jammings.size(), 1u);
+  EXPECT_EQ(account.shear_jammings[0].test, "shear");
+  ASSERT_EQ(account.relaxed.size(), 2u);
+  EXPECT_EQ(account.relaxed[1].test, "rests");
+  EXPECT_NEAR(account.relaxed[1].phi_max, 0.82, 1e-12);
+  ASSERT_EQ(account.tapped.size(), 1u);
+  EXPECT_EQ(account.tapped[0].density.test, "back");
+  EXPECT_NEAR(account.tapped[0].phi_max, 0.82, 1e-12);
+  EXPECT_NEAR(account.tapped[0].amplitude, 0.005, 1e-12);
+  ASSERT_EQ(account.left_out.size(), 1u);
+  EXPECT_EQ(account.left_out[0].name, "astray");
+  const Json json = account.to_json()["memory"];
+  EXPECT_EQ(json["relaxed"]["nu"].size(), 2u);
+  EXPECT_EQ(json["tapped"]["phi_J"].size(), 1u);
 }
 
 TEST(MemoryTables, RestsAndTapsComeBackAsTheyWere) {
