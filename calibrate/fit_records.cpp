@@ -2,7 +2,7 @@
 
 #include "grainlaw/calibrate/fit_account.hpp"
 #include "grainlaw/calibrate/fit_checks.hpp"
-#include "grainlaw/calibrate/fit_memory_strain.hpp"
+#include "grainlaw/calibrate/fit_memory_numbers.hpp"
 #include "grainlaw/calibrate/fit_parameters.hpp"
 #include "grainlaw/calibrate/memory_tables.hpp"
 #include "grainlaw/element/error.hpp"
@@ -108,7 +108,7 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
   if (!account.cycles.empty()) out.over_compression = over_compression_table(account.cycles);
   if (!account.shear_jammings.empty()) out.shear_jamming = shear_jamming_table(account.shear_jammings);
   out.parameters.closure = {"iso", out.parameters.isotropic.contains("d2") ? "d2" : "iso", false};
-  add_memory_strain(dir, out.parameters);
+  add_memory_numbers(dir, folder, out.parameters);
   out.fits = account.to_json();
   out.fits["checks"] = physics_checks(account);
   return out;

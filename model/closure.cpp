@@ -127,6 +127,7 @@ void add_memory(BasicLaws<P>& laws, const ParameterSet& parameters, const std::s
     throw Error(parameters.file, "memory.eps_c",
                 "is missing; " + who + " needs it (fit and calibrate write it)");
   laws.memory.eps_c = read(*memory.eps_c);
+  if (memory.hold) laws.memory.hold = read(*memory.hold);
 }
 
 /// Fills in what the terms need.

@@ -46,6 +46,7 @@ template <class P>
 struct BasicMemoryNumbers {
   BasicOverCompression<P> over;  ///< Eqs. 5.1, 5.5
   P eps_c = 1;                   ///< strain by which the memory of shear is later than the fabric
+  P hold = 0;                    ///< part of the fabric's rate that steady shear takes
 };
 
 /// The laws of one form, as numbers.

@@ -131,6 +131,8 @@ const std::vector<Symbol> memory{
      "Density below which a reversal of shear unjams the packing."},
     {"memory.eps_c", "<var>ε</var><sub>c</sub>", "{/:Italic ε}_c", "–",
      "Strain by which the memory of shear is later than the fabric (form memory)."},
+    {"memory.hold", "<var>h</var>", "{/:Italic h}", "–",
+     "Part of the fabric's rate that steady shear takes (form memory)."},
 };
 
 const std::vector<Symbol> volumetric{

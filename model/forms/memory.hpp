@@ -5,10 +5,11 @@
 // Shear is remembered as m in [0, 1], 0 where it is forgotten and 1 in steady shear. It follows the square of
 // the fabric, late by the strain eps_c:
 //   dm    = [min(1, (F_dev/F_max)^2) - m] |d eps_dev|/eps_c
+// and what is remembered holds the fabric: dF_dev is that of Eq. 4.16 times 1 - hold m.
 //   phi_J = phi_H + (phi_s - phi_H) m, or phi_H where that is below phi_s
 //   P*    = Eq. 2.14 at phi_J; its numbers go from the isotropic row to that of steady shear as m goes from 0
 //           to 1
-// dsigma*_dev and dF_dev are those of Eq. 4.16. phi_H is what over-compression has left, phi_s where pressure
+// dsigma*_dev is that of Eq. 4.16. phi_H is what over-compression has left, phi_s where pressure
 // begins in steady shear.
 //
 // From isotropy F_dev/F_max = 1 - exp(-beta_F eps_dev), so m begins as eps_dev^3, without the singular strain
@@ -171,7 +172,8 @@ struct BasicMemory {
     }
     if (laws.terms.volumetric) dydt[1] = fabric_by_volume(laws.volumetric, v, F);
     if (!shears) return true;
-    dydt[1] = dydt[1] + approach_rate(q * c.F_max, F, c.beta_F * (size_e / direction.S_F_I));
+    const auto free = 1 - laws.memory.hold * m;
+    dydt[1] = dydt[1] + approach_rate(q * c.F_max, F, c.beta_F * free * (size_e / direction.S_F_I));
     const auto f = F / c.F_max;
     R aligned = f * f;
     if (aligned > 1) aligned = 1.0;

@@ -23,7 +23,8 @@ constexpr Form all_forms[] = {Form::reduced_closed, Form::reduced, Form::coupled
 ParameterSet set_of(Form form) {
   ParameterSet set = thesis();
   if (form != Form::memory) return set;
-  set.memory->eps_c.emplace().value = 0.0423;
+  set.memory->eps_c.emplace().value = 0.042;
+  set.memory->hold.emplace().value = 0.4;
   return set;
 }
 bool is_coupled(Form form) {

@@ -21,7 +21,8 @@ constexpr double phi_H = 0.6649, nothing = std::numeric_limits<double>::quiet_Na
 const Law& law() {
   static const Law made = [] {
     ParameterSet set = thesis();
-    set.memory->eps_c.emplace().value = 0.0423;
+    set.memory->eps_c.emplace().value = 0.042;
+    set.memory->hold.emplace().value = 0.4;
     return make_law(set, Form::memory);
   }();
   return made;

@@ -127,9 +127,9 @@ TEST(Memory, TheStrainsOfEquations5_3And5_13FollowFromOneRate) {
     first = std::max(first, std::abs(1 - point.state().memory - std::exp(-std::pow(0.01 * i / 0.102, 1.37))));
   }
   EXPECT_LT(first, 0.12);
-  // After a reversal phi_J comes back for a while, where Eq. 5.13 has it back at once. Half of the most that it
-  // has is taken again at 0.130 by the thesis's 5.13, 0.17 (ln 2)^(1/1.37), and at 0.193 by our own packings',
-  // 0.23 (ln 2)^(1/2.1) (docs/memory.md).
+  // After a reversal phi_J comes back for a while, where Eq. 5.13 has it back at once. Half of the most that
+  // it has is taken again at 0.130 by the thesis's 5.13, 0.17 (ln 2)^(1/1.37), and at 0.193 by our own
+  // packings', 0.23 (ln 2)^(1/2.1) (docs/memory.md).
   double most = 0, at_most = 0, half = 0;
   for (int i = 1; i <= 400 && half == 0; ++i) {
     ASSERT_FALSE(point.walk(0, -0.001).failed());
@@ -261,6 +261,21 @@ TEST(Memory, SmallCyclesLeaveItAlone) {
     EXPECT_NEAR(small / tiny, 10, 5);
     EXPECT_GT(large, 0.4);
   }
+}
+
+TEST(Memory, WhatIsRememberedHoldsTheFabric) {
+  ParameterSet set = with_memory();
+  const auto slope = [&](double strain_before) {  // -dF_dev/d eps_dev at a reversal
+    MaterialPoint point(make_law(set, Form::memory), isotropic(0.711, 0.6649), {1e-10, 1e-13});
+    EXPECT_FALSE(point.walk(0, strain_before).failed());
+    const double before = point.state().F_dev;
+    EXPECT_FALSE(point.walk(0, -1e-6).failed());
+    return (before - point.state().F_dev) / 1e-6;
+  };
+  const double free_first = slope(0.01), free_steady = slope(1);
+  set.memory->hold.emplace().value = 0.4;
+  EXPECT_NEAR(slope(0.01) / free_first, 1, 0.01);  // little is remembered yet
+  EXPECT_NEAR(slope(1) / free_steady, 0.6, 0.001);
 }
 
 TEST(Memory, PressureIsSmoothAtAReversal) {
