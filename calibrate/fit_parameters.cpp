@@ -224,7 +224,7 @@ std::optional<MemoryLaws> Reference::memory() const {
   MemoryLaws memory = *set_->memory;
   if (!same_material_) {
     mark_as_other_material(memory, memory_keys, whose());
-    for (auto* option : {&memory.phi_cr, &memory.eps_c, &memory.eps_r})
+    for (auto* option : {&memory.phi_cr, &memory.eps_c, &memory.hold})
       if (*option) (*option)->source = "assumed";
   }
   return memory;

@@ -2,7 +2,7 @@
 
 #include "grainlaw/calibrate/fit_account.hpp"
 #include "grainlaw/calibrate/fit_checks.hpp"
-#include "grainlaw/calibrate/fit_memory_strains.hpp"
+#include "grainlaw/calibrate/fit_memory_numbers.hpp"
 #include "grainlaw/calibrate/fit_parameters.hpp"
 #include "grainlaw/calibrate/memory_tables.hpp"
 #include "grainlaw/element/error.hpp"
@@ -112,7 +112,7 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
   if (!account.relaxed.empty()) out.relaxed = relaxed_table(account.relaxed);
   if (!account.tapped.empty()) out.tapped = tapped_table(account.tapped);
   out.parameters.closure = {"iso", out.parameters.isotropic.contains("d2") ? "d2" : "iso", false};
-  add_memory_strains(dir, folder, out.parameters);
+  add_memory_numbers(dir, folder, out.parameters);
   out.fits = account.to_json();
   out.fits["checks"] = physics_checks(account);
   return out;
