@@ -7,6 +7,7 @@
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/model/columns.hpp"
 #include "grainlaw/model/pressure_drift.hpp"
+#include "grainlaw/model/samples.hpp"
 #include "grainlaw/model/start.hpp"
 #include "grainlaw/model/walk/controlled_path.hpp"
 #include "grainlaw/model/walk/point.hpp"
@@ -21,44 +22,6 @@ namespace {
 constexpr double off_path = 0.01;
 /// Warnings about lost and found contacts are listed up to this many.
 constexpr std::size_t most_events = 10;
-
-bool is_shear(const Leg& leg) { return leg.eps_dev[0] != leg.eps_dev[1]; }
-
-/// Strains must be numbers, and the law carries one direction of shear: every leg must keep the axes of the
-/// first that shears.
-void check_legs(const Path& path, const std::vector<Leg>& legs) {
-  for (std::size_t i = 0; i < legs.size(); ++i)
-    if (!std::isfinite(legs[i].eps_vol[1]) || !std::isfinite(legs[i].eps_dev[1]))
-      throw Error(path.file, path.segments[i].key, "its strain must be a finite number");
-  const auto first = std::find_if(legs.begin(), legs.end(), is_shear);
-  for (auto leg = first; leg != legs.end(); ++leg)
-    if (is_shear(*leg) && !coaxial(leg->strain, first->strain))
-      throw Error(path.file, path.segments[static_cast<std::size_t>(leg - legs.begin())].key,
-                  "mode " + name_of(leg->mode) + " is not coaxial with " + name_of(first->mode) +
-                      " before it: the law carries stress and fabric along one direction of shear only");
-}
-
-std::vector<Sample> even_samples(const std::vector<Leg>& legs, int rows_per_leg) {
-  std::vector<Sample> samples{{0, 0}};
-  for (std::size_t i = 0; i < legs.size(); ++i) {
-    const int rows = legs[i].mode == Mode::relax ? 1 : rows_per_leg;
-    for (int row = 1; row <= rows; ++row) samples.push_back({i, static_cast<double>(row) / rows});
-  }
-  return samples;
-}
-
-void check_samples(const std::vector<Sample>& samples, std::size_t legs) {
-  Sample last;
-  for (const Sample& sample : samples) {
-    const bool ordered =
-        sample.leg > last.leg || (sample.leg == last.leg && sample.progress >= last.progress);
-    if (sample.leg >= legs || !(sample.progress >= 0 && sample.progress <= 1) || !ordered)
-      throw Error("", "samples",
-                  "must be points of the path in order, got leg " + std::to_string(sample.leg) +
-                      ", progress " + to_text(sample.progress));
-    last = sample;
-  }
-}
 
 /// The slopes of sensitive_columns(), name by name.
 template <class S>
@@ -117,11 +80,30 @@ Walked walk_legs(Point& point, const Path& path, const std::vector<Leg>& legs,
   return walked;
 }
 
-void conclude(Prediction& prediction, const std::vector<Leg>& legs, const Walked& walked,
+/// Where a row lies furthest beyond a saturation value, if by more than a per cent. Nothing keeps s_dev and
+/// F_dev within them where the volume changes.
+void tell_beyond_saturation(const Record& record, const char* column, const char* limit,
+                            const Saturation& law, std::vector<std::string>& warnings) {
+  double most = 1.01;
+  std::size_t row = record.rows();
+  for (std::size_t i = 0; i < record.rows(); ++i) {
+    const double times = std::abs(record[column][i]) / saturation(law, record["nu"][i]);
+    if (!(times > most)) continue;  // nor where there is no stress, or no limit
+    most = times;
+    row = i;
+  }
+  if (row < record.rows())
+    warnings.push_back(std::string(column) + " goes to " + shown(most) + " " + limit + " " +
+                       where(record["nu"][row], record["eps_dev"][row]));
+}
+
+void conclude(Prediction& prediction, const Laws& laws, const std::vector<Leg>& legs, const Walked& walked,
               const std::vector<Event>& events) {
   prediction.status = walked.status;
   prediction.end = walked.end;
   tell_events(events, prediction.warnings);
+  tell_beyond_saturation(prediction.record, "s_dev", "s_max", laws.s_max, prediction.warnings);
+  tell_beyond_saturation(prediction.record, "F_dev", "F_max", laws.F_max, prediction.warnings);
   tell_drift(pressure_drift(legs, walked.P_at_ends), prediction.warnings);
 }
 
@@ -162,8 +144,7 @@ SensitivePrediction predict_with(const Seeds& seeds, const ParameterSet& paramet
   const Choice choice{options.form, options.terms};
   const StartState start = start_of(parameters, path, choice);
   const auto slopes = seeds.start<S>(parameters, path, choice);
-  const std::vector<Leg> legs = path.legs(start.state.nu);
-  check_legs(path, legs);
+  const std::vector<Leg> legs = legs_of(path, start.state.nu);
   check_samples(samples, legs.size());
   const std::vector<std::string>& names = seeds.names();
   std::vector<std::string> columns = prediction_columns();
@@ -183,7 +164,7 @@ SensitivePrediction predict_with(const Seeds& seeds, const ParameterSet& paramet
     events.push_back({e.jammed, e.nu.value, e.eps_vol.value, e.eps_dev.value});
     result.events.push_back({e.jammed, widened(e.nu), widened(e.eps_vol), widened(e.eps_dev)});
   }
-  conclude(result.prediction, legs, walked, events);
+  conclude(result.prediction, laws_of(start.law), legs, walked, events);
   result.idle = idle_names(result.prediction.record, names);
   return result;
 }
@@ -193,15 +174,14 @@ SensitivePrediction predict_with(const Seeds& seeds, const ParameterSet& paramet
 Prediction predict(const ParameterSet& parameters, const Path& path, const std::vector<Sample>& samples,
                    const PredictOptions& options) {
   const StartState start = start_of(parameters, path, {options.form, options.terms});
-  const std::vector<Leg> legs = path.legs(start.state.nu);
-  check_legs(path, legs);
+  const std::vector<Leg> legs = legs_of(path, start.state.nu);
   check_samples(samples, legs.size());
   Prediction prediction{Record(prediction_columns()), start.echo, start.warnings, {}};
   MaterialPoint point(start.law, start.state, {options.rtol, options.atol}, options.method);
   const Walked walked = walk_legs(point, path, legs, samples, [&](std::size_t leg, const State& state) {
     prediction.record.append(row_of(point.law(), state, leg));
   });
-  conclude(prediction, legs, walked, point.events());
+  conclude(prediction, laws_of(start.law), legs, walked, point.events());
   return prediction;
 }
 
@@ -221,7 +201,7 @@ Prediction predict_controlled(const ParameterSet& parameters, const Path& path,
   visit(0, point.state());
   const WalkedPath walked = walk_controlled(point, tolerance, path, options.rows_per_leg, visit);
   for (const auto& warning : walked.warnings) prediction.warnings.push_back(warning);
-  conclude(prediction, walked.legs,
+  conclude(prediction, laws_of(start.law), walked.legs,
            {end_status(walked.status, point.state()), walked.P_at_ends, point.state()}, point.events());
   return prediction;
 }

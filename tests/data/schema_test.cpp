@@ -126,6 +126,12 @@ TEST(Schema, ColumnsOfTheTablesOfMemory) {
             calibrate::over_compression_table({}).columns());
   EXPECT_EQ(schema("shear_jamming")["required"].get<std::vector<std::string>>(),
             calibrate::shear_jamming_table({}).columns());
+  EXPECT_EQ(schema("relaxed")["required"].get<std::vector<std::string>>(),
+            calibrate::relaxed_table({}).columns());
+  EXPECT_EQ(schema("tapped")["required"].get<std::vector<std::string>>(),
+            calibrate::tapped_table({}).columns());
+  for (const char* kind : {"relaxed", "tapped"})
+    EXPECT_EQ(keys(schema(kind)["properties"]), schema(kind)["required"].get<std::vector<std::string>>());
 }
 
 TEST(Schema, ColumnsOfATableOfModuli) {

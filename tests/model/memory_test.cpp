@@ -18,8 +18,7 @@ using testing::HasSubstr;
 
 ParameterSet with_memory() {
   ParameterSet set = thesis();
-  set.memory->eps_c.emplace().value = 0.076;
-  set.memory->eps_r.emplace().value = 0.0123;
+  set.memory->eps_c.emplace().value = 0.0423;
   return set;
 }
 
@@ -42,8 +41,13 @@ MaterialPoint point_at(const State& start, Tolerance tolerance = {1e-10, 1e-13})
   return MaterialPoint(make_law(with_memory(), Form::memory), start, tolerance);
 }
 
-/// ln(1 - m) of shear from isotropy at constant volume: the integral of a = 1 - exp(-beta e) over eps_c.
-double forgotten(double beta, double e, double eps_c) { return -(e + std::expm1(-beta * e) / beta) / eps_c; }
+constexpr double eps_c = 0.0423;
+
+/// m after shear e from isotropy at constant volume: dm/de = [(1 - exp(-beta e))^2 - m]/eps_c.
+double remembered(double beta, double e) {
+  const double x = std::exp(-e / eps_c), b = beta * eps_c;
+  return 1 - x - 2 * (std::exp(-beta * e) - x) / (1 - b) + (std::exp(-2 * beta * e) - x) / (1 - 2 * b);
+}
 
 TEST(Memory, CyclesOfOverCompressionFollowEquation5_1) {
   const Memory law = form();
@@ -106,7 +110,7 @@ TEST(Memory, ShearTakesTheJammingDensityByItsClosedForm) {
   MaterialPoint point = point_at(isotropic(nu, 0.6649));
   for (int i = 1; i <= 40; ++i) {
     ASSERT_FALSE(point.walk(0, 0.01).failed());
-    const double m = -std::expm1(forgotten(beta, 0.01 * i, 0.076));
+    const double m = remembered(beta, 0.01 * i);
     EXPECT_NEAR(point.state().memory, m, 1e-9);
     EXPECT_NEAR(point.state().phi_J, 0.6649 + m * (0.6581 - 0.6649), 1e-11);
     EXPECT_NEAR(point.state().P, law.pressure_of(nu, 0.6649, m), 1e-10);
@@ -114,26 +118,34 @@ TEST(Memory, ShearTakesTheJammingDensityByItsClosedForm) {
 }
 
 TEST(Memory, TheStrainsOfEquations5_3And5_13FollowFromOneRate) {
-  // exp[-(eps/0.102)^1.37] of first shear; exp[-(eps/0.17)^1.37] after a reversal, where the fabric has to
-  // turn first.
+  // exp[-(eps/0.102)^1.37] of first shear.
   const double nu = 0.711;
   MaterialPoint point = point_at(isotropic(nu, 0.6649));
-  double first = 0, again = 0;
+  double first = 0;
   for (int i = 1; i <= 40; ++i) {
     ASSERT_FALSE(point.walk(0, 0.01).failed());
     first = std::max(first, std::abs(1 - point.state().memory - std::exp(-std::pow(0.01 * i / 0.102, 1.37))));
   }
-  EXPECT_LT(first, 0.05);
-  ASSERT_FALSE(point.walk(0, -0.04).failed());  // phi_J has come back
-  const double most = 1 - point.state().memory;
+  EXPECT_LT(first, 0.12);
+  // After a reversal phi_J comes back for a while, where Eq. 5.13 has it back at once. Half of the most that
+  // it has is taken again at 0.130 by the thesis's 5.13, 0.17 (ln 2)^(1/1.37), and at 0.193 by our own
+  // packings', 0.23 (ln 2)^(1/2.1) (docs/memory.md).
+  double most = 0, at_most = 0, half = 0;
+  for (int i = 1; i <= 400 && half == 0; ++i) {
+    ASSERT_FALSE(point.walk(0, -0.001).failed());
+    const double taken_back = 1 - point.state().memory;
+    if (taken_back > most) {
+      most = taken_back;
+      at_most = 0.001 * i;
+    } else if (taken_back < most / 2) {
+      half = 0.001 * i;
+    }
+  }
   EXPECT_GT(most, 0.5);
   EXPECT_LT(most, 0.9);
-  for (int i = 5; i <= 40; ++i) {
-    ASSERT_FALSE(point.walk(0, -0.01).failed());
-    again = std::max(
-        again, std::abs((1 - point.state().memory) / most - std::exp(-std::pow(0.01 * i / 0.17, 1.37))));
-  }
-  EXPECT_LT(again, 0.15);
+  EXPECT_NEAR(at_most, 0.08, 0.02);
+  EXPECT_GT(half, 0.130);
+  EXPECT_LT(half, 0.193);
 }
 
 TEST(Memory, SteadyShearHasThePressureOfItsRowWhateverWasBefore) {
@@ -184,7 +196,7 @@ TEST(Memory, ShearJamsBetweenBothDensitiesAndReversalUnjams) {
   // Where it jams: m = (phi_H - nu)/(phi_H - phi_s), by the closed form.
   ASSERT_EQ(point.events().size(), 1U);
   const double e = point.events()[0].eps_dev, beta = saturation(law.laws.beta_F, nu);
-  EXPECT_NEAR(-std::expm1(forgotten(beta, e, 0.076)), (phi_H - nu) / (phi_H - phi_s), 1e-4);
+  EXPECT_NEAR(remembered(beta, e), (phi_H - nu) / (phi_H - phi_s), 1e-4);
   ASSERT_FALSE(point.walk(0, -0.06).failed());
   EXPECT_FALSE(point.state().jammed);
   ASSERT_FALSE(point.walk(0, -0.3).failed());
@@ -228,6 +240,70 @@ TEST(Memory, VolumeMovesFromAnyDensityOnTheLightPath) {
       const Status status = light.update(state, v, 0.01);
       EXPECT_FALSE(status.failed()) << nu << " " << v << status.message;
     }
+}
+
+/// m of a point in steady shear at nu after so many cycles of this size, the first against the shear.
+double after_small_cycles(double nu, double size, int cycles) {
+  MaterialPoint point = point_at(isotropic(nu, 0.6649));
+  EXPECT_FALSE(point.walk(0, 1).failed());
+  for (int i = 0; i < 2 * cycles; ++i) EXPECT_FALSE(point.walk(0, i % 2 == 0 ? -size : size).failed());
+  return point.state().memory;
+}
+
+TEST(Memory, SmallCyclesLeaveItAlone) {
+  // As long in all, 0.1. The fabric of Eq. 4.16 sinks as the root of size and length, and m with it.
+  for (const double nu : {0.685, 0.711}) {
+    const double steady = after_small_cycles(nu, 0.001, 0);
+    const double tiny = steady - after_small_cycles(nu, 1e-5, 5000),
+                 small = steady - after_small_cycles(nu, 1e-3, 50),
+                 large = steady - after_small_cycles(nu, 1e-2, 5);
+    EXPECT_LT(tiny, 0.06);
+    EXPECT_NEAR(small / tiny, 10, 5);
+    EXPECT_GT(large, 0.4);
+  }
+}
+
+TEST(Memory, WhatIsRememberedHoldsTheFabric) {
+  ParameterSet set = with_memory();
+  const auto slope = [&](double strain_before) {  // -dF_dev/d eps_dev at a reversal
+    MaterialPoint point(make_law(set, Form::memory), isotropic(0.711, 0.6649), {1e-10, 1e-13});
+    EXPECT_FALSE(point.walk(0, strain_before).failed());
+    const double before = point.state().F_dev;
+    EXPECT_FALSE(point.walk(0, -1e-6).failed());
+    return (before - point.state().F_dev) / 1e-6;
+  };
+  const double free_first = slope(0.01), free_steady = slope(1);
+  set.memory->hold.emplace().value = 0.4;
+  EXPECT_NEAR(slope(0.01) / free_first, 1, 0.01);  // little is remembered yet
+  EXPECT_NEAR(slope(1) / free_steady, 0.6, 0.001);
+}
+
+TEST(Memory, PressureIsSmoothAtAReversal) {
+  const Memory law = form();
+  MaterialPoint point = point_at(isotropic(0.711, 0.6649));
+  ASSERT_FALSE(point.walk(0, 1).failed());
+  const double steady = point.state().P, step = 1e-5;
+  ASSERT_FALSE(point.walk(0, -step).failed());
+  const double first = (point.state().P - steady) / step;
+  ASSERT_FALSE(point.walk(0, step - 1e-3).failed());
+  const double later = (point.state().P - steady) / 1e-3;
+  const double B = law.stiffness(law.curve_of(0.6649, 1.0), 0.711).B;
+  EXPECT_LT(std::abs(first), 0.02 * 0.66 * B * saturation(law.laws.F_max, 0.711));  // of A1
+  EXPECT_NEAR(later / first, 100, 10);
+}
+
+TEST(Memory, JammingAgainTakesMoreStrainThanJammingFirst) {
+  for (const double nu : {0.659, 0.66}) {
+    MaterialPoint point = point_at(isotropic(nu, 0.6649));
+    ASSERT_FALSE(point.walk(0, 0.4).failed());
+    ASSERT_FALSE(point.walk(0, -0.6).failed());
+    ASSERT_EQ(point.events().size(), 3U);
+    const double first = point.events()[0].eps_dev, lost = 0.4 - point.events()[1].eps_dev,
+                 again = 0.4 - point.events()[2].eps_dev;
+    EXPECT_LT(lost, 0.03);
+    EXPECT_GT(again, 1.25 * first) << nu;
+    EXPECT_LT(again, 2 * first) << nu;
+  }
 }
 
 TEST(Memory, StatesThatAreNoneAreRefused) {
@@ -338,6 +414,10 @@ TEST(Memory, StartsFromPressureOrJammingDensityOrCompression) {
                     Form::memory);
   };
   EXPECT_EQ(start(R"({"nu": 0.7, "phi_J": 0.664})").state.history.phi_H, 0.664);
+  EXPECT_EQ(start(R"({"nu": 0.66})").state.history.phi_H, form().laws.pressure.nu_c);
+  const auto fresh = start(R"({"nu": 0.64})").state;  // nothing has compressed it yet
+  EXPECT_EQ(fresh.history.phi_H, form().laws.memory.over.phi_SJ);
+  EXPECT_LE(fresh.history.phi_max, form().laws.memory.over.phi_SJ);
   const auto pressed = start(R"({"nu": 0.7, "P": 0.017})").state;
   EXPECT_NEAR(form().pressure_of(0.7, pressed.history.phi_H, 0.0), 0.017, 1e-12);
   EXPECT_EQ(pressed.P, 0.017);
