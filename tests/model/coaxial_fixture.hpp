@@ -62,6 +62,10 @@ struct Host {
 
   explicit Host(const CoaxialSettings& settings)
       : law(thesis(), settings), state(law.start(Start{0.711, {}, {}, {}, {}, {}}).state) {}
+  /// A workspace is no part of what a point is.
+  Host(const Host& other)
+      : law(other.law), state(other.state), stress(other.stress), tangent(other.tangent) {}
+  Host& operator=(const Host&) = delete;
   Status take(const Sym6& increment) { return law.update(state, increment, workspace, stress, &tangent); }
 };
 

@@ -149,7 +149,7 @@ TEST(Sensitivities, OfTheFormWithMemory) {
     ASSERT_FALSE(s.prediction.status.failed()) << s.prediction.status.message;
     EXPECT_GE(s.events.size(), 2U);
     for (const std::string& name : names) {
-      const double size = size_of(c, name), h = 1e-5 * size;
+      const double size = size_of(c, name), h = 1e-6 * size;
       const Record up = record_of(*moved(c, name, h), Form::memory, {}),
                    down = record_of(*moved(c, name, -h), Form::memory, {});
       for (const std::string& column : sensitive_columns()) {
