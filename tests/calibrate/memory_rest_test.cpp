@@ -141,9 +141,7 @@ TEST(Tapped, RemembersTheLargestVolumeFraction) {
 /// Rows of a leg at the law, over nu for iso, at a constant P for d2 and for a rest.
 void add_rows(TestRecord& test, std::size_t leg, int rows) {
   for (int i = 1; i <= rows; ++i) {
-    const auto between = [&](const double* range) {
-      return range[0] + (range[1] - range[0]) * i / rows;
-    };
+    const auto between = [&](const double* range) { return range[0] + (range[1] - range[0]) * i / rows; };
     const double eps_vol = between(test.legs[leg].eps_vol), nu = test.nu_start * std::exp(eps_vol);
     const bool jams = nu > 0.6567;
     test.rows.append({static_cast<double>(leg), eps_vol, between(test.legs[leg].eps_dev), nu,
