@@ -4,18 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 
-#include "grainlaw/element/error.hpp"
-#include "grainlaw/element/record.hpp"
+#include "grainlaw/apps/bench_model_terms.hpp"
 #include "grainlaw/model/light/light_batch.hpp"
 #include "grainlaw/model/light/light_law.hpp"
 #include "grainlaw/model/walk/point.hpp"
-#include "grainlaw/model/walk/sensitivities.hpp"
 
 namespace grainlaw::apps {
 
@@ -57,10 +53,6 @@ State start_of(const Law& law, double nu) {
   state.jammed = state.P > smallest_pressure && nu > unjamming_density(law);
   if (!state.jammed) state.P = 0;
   return state;
-}
-
-void check(const Status& status) {
-  if (status.failed()) throw Error("the law cannot follow the bench's path: " + status.message);
 }
 
 /// Whoever can take a state along: CVODE, or the light path.
@@ -152,29 +144,6 @@ double error_of(const Trace& trace, const Trace& reference) {
   return worst;
 }
 
-/// Nanoseconds of the fastest of the repetitions that fit into `seconds`, at least one; `before` each is not
-/// timed.
-template <class Before, class F>
-double fastest_of(double seconds, Before before, F f) {
-  using Clock = std::chrono::steady_clock;
-  double best = std::numeric_limits<double>::infinity(), total = 0;
-  while (total < seconds) {
-    before();
-    const auto begin = Clock::now();
-    f();
-    const double took = std::chrono::duration<double>(Clock::now() - begin).count();
-    best = std::min(best, took);
-    total += took;
-  }
-  return 1e9 * best;
-}
-
-template <class F>
-double fastest(double seconds, F f) {
-  return fastest_of(
-      seconds, [] {}, f);
-}
-
 /// Of a batch, after the one that begins its direction.
 constexpr int batch_increments = 100;
 
@@ -191,14 +160,15 @@ class Timing {
   Timing(const ParameterSet& parameters, const ModelBench& bench,
          const std::function<void(const ModelTiming&, double)>& told)
       : parameters_(parameters), bench_(bench), told_(told), law_(make_law(parameters, Form::coupled)) {
-    planned_ = bench.tolerances.size() * (4 * 6) + bench.batches.size() * (bench.threads > 1 ? 4 : 2) + 6;
+    planned_ = bench.tolerances.size() * (4 * 6) + bench.batches.size() * (bench.threads > 1 ? 6 : 3) + 16;
   }
 
   std::vector<ModelTiming> run() {
     for (const Course& course : courses()) time_course(course, "path");
     time_course(figure_4_14(), "increment");
     for (const std::size_t points : bench_.batches) time_batches(points);
-    time_terms();
+    time_terms(parameters_, bench_.seconds, [this](const ModelTiming& timing) { line(timing); });
+    time_hosts(parameters_, bench_, [this](const ModelTiming& timing) { line(timing); });
     return lines_;
   }
 
@@ -246,42 +216,6 @@ class Timing {
             batch_increments / static_cast<double>(points);
         line({"batch", volume == 0 ? "at rest" : "moving", "light", 1e-6, points, threads, each, 0});
       }
-  }
-
-  /// Increments with a tangent, with a volume that moves, and paths with sensitivities.
-  void time_terms() {
-    const LightLaw light(law_, {1e-6, 1e-9});
-    constexpr int count = 4000;
-    const auto increments = [&](const std::string& name, auto update) {
-      const double ns = fastest(bench_.seconds, [&] {
-        State state = start_of(law_, 0.711);
-        for (int i = 0; i < count; ++i) update(state);
-      });
-      line({"term", name, "light", 1e-6, 1, 1, ns / count, 0});
-    };
-    LightCache cache;
-    Tangent tangent;
-    increments("plain", [&](State& s) { light.update(s, 0, 1e-4, &cache); });
-    increments("tangent", [&](State& s) { light.update(s, 0, 1e-4, tangent); });
-    increments("volume moves", [&](State& s) { light.update(s, 1e-5, 1e-4, &cache); });
-    increments("volume moves, tangent", [&](State& s) { light.update(s, 1e-5, 1e-4, tangent); });
-    time_sensitivities();
-  }
-
-  void time_sensitivities() {
-    const Path path = Path::read(Reader(
-        parse_json(R"({"start": {"nu": 0.711}, "segments": [{"mode": "d2", "controls": {"eps_dev": 0.4}}]})",
-                   "bench"),
-        "bench"));
-    PredictOptions options;
-    options.rtol = 1e-6;
-    options.atol = 1e-9;
-    const double plain = fastest(bench_.seconds, [&] { predict(parameters_, path, options); });
-    line({"term", "path, no sensitivities", "CVODE BDF", 1e-6, 1, 1, plain, 0});
-    const auto names = names_of_sensitivities(parameters_, path, {Form::coupled, {}});
-    const double with =
-        fastest(bench_.seconds, [&] { predict_sensitivities(parameters_, path, names, options); });
-    line({"term", fmt::format("path, {} sensitivities", names.size()), "CVODE BDF", 1e-6, 1, 1, with, 0});
   }
 
   const ParameterSet& parameters_;

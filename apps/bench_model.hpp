@@ -14,7 +14,8 @@ namespace grainlaw::apps {
 /// One line of the table. What does not belong to its kind is 0.
 struct ModelTiming {
   /// "path": whole segments with samples, `ns` per path; "increment": one point, "batch": many, both per
-  /// increment and point; "term": an increment with something on.
+  /// increment and point; "term": an increment with something off or on; "host": through the C interface, per
+  /// increment and point.
   std::string kind;
   std::string path;  ///< "monotonic", "cycles", "jamming"; of a batch "at rest" or "moving" (its volume); of
                      ///< a term its name

@@ -42,6 +42,9 @@ ModelBench bench_of(const Arguments& arguments) {
   return bench;
 }
 
+/// Of a state: the history twice, m, and whether the stretch began jammed.
+constexpr std::size_t memory_bytes = 2 * sizeof(model::History) + 2 * sizeof(double);
+
 std::string spoken(const ModelTiming& t) {
   const std::string where = t.kind == "batch" ? fmt::format("{} points, {} thread{}, volume {}", t.points,
                                                             t.threads, t.threads == 1 ? "" : "s", t.path)
@@ -61,8 +64,10 @@ int run(const Arguments& arguments) {
   const fs::path dir = arguments.output.empty() ? fs::path("out/bench-model") : fs::path(arguments.output);
   fs::create_directories(dir);
   Terminal terminal;
-  terminal.say(fmt::format("state of a point: {} bytes; coupled form of {}, start nu = 0.711",
-                           sizeof(model::State), file.string()));
+  terminal.say(
+      fmt::format("state of a point: {} bytes, of which {} are for memory, used or not; coupled form of {}, "
+                  "start nu = 0.711",
+                  sizeof(model::State), memory_bytes, file.string()));
   const auto timings = time_model(parameters, bench, [&](const ModelTiming& t, double done) {
     terminal.say(spoken(t));
     terminal.draw(fmt::format("{} {:.0f} %", bar_text(done, 30), 100 * done));
@@ -74,7 +79,8 @@ int run(const Arguments& arguments) {
                                             {"vectors", model::LightBatch::vectors()},
                                             {"parameters", parameters.name},
                                             {"written", dem::utc_now()},
-                                            {"state_bytes", sizeof(model::State)}}
+                                            {"state_bytes", sizeof(model::State)},
+                                            {"state_bytes_of_memory", memory_bytes}}
                                                .dump(1) +
                                            "\n");
   write_file(dir / "model-speed.svg", bench_model_picture(timings));

@@ -202,7 +202,8 @@ int run(const Arguments& arguments) {
   const auto options = read_options(arguments);
   const auto probe = read_probe(arguments);
   const auto parameters = model::ParameterSet::load(arguments.parameters);
-  const Followed followed = read_followed(arguments.path, arguments.nu, arguments.P);
+  const Followed followed =
+      read_followed(arguments.path, arguments.nu, arguments.P, parameters.material.stress_unit_kPa());
   const bool even_rows = !arguments.rows.empty();
   const model::Prediction prediction =
       is_minimal(arguments)
@@ -264,8 +265,8 @@ Action add_predict(CLI::App& program) {
       ->delimiter(',');
   command->add_option("--nu", arguments->nu, "volume fraction at the first row of STRAINS.csv")
       ->type_name("NUMBER");
-  command->add_option("--P", arguments->P, "pressure over k* at the first row of STRAINS.csv")
-      ->type_name("NUMBER");
+  command->add_option("--P", arguments->P, "pressure at the first row of STRAINS.csv: over k*, or as 50kPa")
+      ->type_name("NUMBER[kPa]");
   command
       ->add_option("--envelope", arguments->envelope,
                    "in place of the path's table, the responses of its end to strains of this size in all "

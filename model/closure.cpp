@@ -26,7 +26,9 @@ const Term all_terms[] = {
      &Terms::axial,
      {Form::reduced_closed, Form::reduced, Form::coupled, Form::memory, Form::coupled_3_14}},
     {"energy", &Terms::energy, {Form::coupled}},
-    {"volumetric", &Terms::volumetric, {Form::reduced, Form::coupled, Form::memory}}};
+    {"volumetric", &Terms::volumetric, {Form::reduced, Form::coupled, Form::memory}},
+    {"constant_F_v", &Terms::constant_F_v, {Form::coupled, Form::coupled_3_14}},
+    {"moduli_table", &Terms::moduli_table, {Form::coupled}}};
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
@@ -90,6 +92,12 @@ Choice choice_of(const std::string& name) {
   Choice choice{form_of(part), {}};
   if (name.ends_with('+')) throw Error("", "form", "must not end with a plus, got \"" + name + "\"");
   while (std::getline(parts, part, '+')) add_term(choice, part, name);
+  if (choice.terms.moduli_table && (choice.terms.energy || choice.terms.constant_F_v))
+    throw Error(
+        "", "form",
+        "takes its moduli from moduli_table or from the laws that energy and constant_F_v change, not "
+        "both, got \"" +
+            name + "\"");
   return choice;
 }
 
@@ -140,6 +148,7 @@ void add_terms(BasicLaws<P>& laws, const ParameterSet& parameters, const Terms& 
     laws.moduli.a_F = read(a_F);
     laws.moduli.a_s = read(a_s);
   }
+  if (terms.constant_F_v) laws.F_v = read(parameters.need_constant_F_v(who));
   if (terms.volumetric) {
     const VolumetricLaws& v = parameters.need_volumetric(who);
     laws.volumetric = {read(v.compression), read(v.decompression)};

@@ -26,8 +26,10 @@ Form form_of(const std::string& name);
 /// Terms past the thesis that a form may take, off unless asked for.
 struct Terms {
   bool axial = false;  ///< s_max, F_max and their rates of axisymmetric strain (group shear_axial), not of D2
-  bool energy = false;      ///< A1 and A2 from one energy (moduli.a_F, a_s) in place of Eqs. 4.12 and 4.13
-  bool volumetric = false;  ///< F_dev changes with volume alone (group volumetric)
+  bool energy = false;        ///< A1 and A2 from one energy (moduli.a_F, a_s) in place of Eqs. 4.12 and 4.13
+  bool volumetric = false;    ///< F_dev changes with volume alone (group volumetric)
+  bool constant_F_v = false;  ///< moduli.F_v in Eqs. 4.11 and 4.14, whatever nu, in place of F_v(nu)
+  bool moduli_table = false;  ///< moduli by group moduli_table in place of their laws
   bool operator==(const Terms&) const = default;
 };
 
@@ -58,6 +60,7 @@ struct BasicLaws {
   BasicSaturation<P> s_max, F_max, beta_F;
   BasicSaturation<P> beta_s;             ///< reduced forms only
   BasicModuli<P> moduli;                 ///< coupled forms only
+  P F_v = 0;                             ///< of the term constant_F_v
   BasicPressureCurve<P> shear_pressure;  ///< memory only: the row closure.contacts, of steady shear
   BasicMemoryNumbers<P> memory;          ///< memory only
   BasicVolumetric<P> volumetric;

@@ -166,13 +166,45 @@ MemoryLaws read_memory(Reader reader) {
 
 ModuliLaws read_moduli(Reader reader) {
   auto moduli = read_keys<ModuliLaws>(reader);
-  reader.optional({"a_F", "a_s"});
+  reader.optional({"a_F", "a_s", "F_v"});
+  if (reader.has("F_v")) moduli.F_v = read_parameter(reader.object("F_v"), above(0));
   if (reader.has("a_F") || reader.has("a_s")) {  // one means nothing without the other
     moduli.a_F = read_parameter(reader.object("a_F"), any_number());
     moduli.a_s = read_parameter(reader.object("a_s"), any_number());
   }
   reader.finish();
   return moduli;
+}
+
+TabulatedLaws read_moduli_table(Reader reader) {
+  const std::vector<double> nu = reader.numbers("nu", inside(0, 1), 2);
+  for (std::size_t i = 1; i < nu.size(); ++i)
+    if (!(nu[i] > nu[i - 1]))
+      throw Error(reader.file(), reader.path_of("nu[" + std::to_string(i) + "]"),
+                  "must be > the one before, " + to_text(nu[i - 1]) + ", got " + to_text(nu[i]));
+  std::array<std::vector<double>, ModuliTable::columns> values;
+  for (std::size_t column = 0; column < ModuliTable::columns; ++column) {
+    const char* name = ModuliTable::names[column];
+    const bool positive = column == ModuliTable::B || column == ModuliTable::GB_ini;
+    values[column] = reader.numbers(name, positive ? above(0) : any_number());
+    if (values[column].size() != nu.size())
+      throw Error(reader.file(), reader.path_of(name),
+                  "must have one number for each of the " + std::to_string(nu.size()) + " nu, got " +
+                      std::to_string(values[column].size()));
+  }
+  TabulatedLaws laws{
+      {nu, std::move(values)}, reader.word("source", {"fit", "thesis", "assumed"}), reader.text("note", "")};
+  reader.finish();
+  return laws;
+}
+
+Json moduli_table_json(const TabulatedLaws& laws) {
+  Json json{{"nu", laws.table.nu()}};
+  for (std::size_t column = 0; column < ModuliTable::columns; ++column)
+    json[ModuliTable::names[column]] = laws.table.values(static_cast<ModuliTable::Column>(column));
+  json["source"] = laws.source;
+  if (!laws.note.empty()) json["note"] = laws.note;
+  return json;
 }
 
 std::map<std::string, PackingLaw> read_isotropic(Reader reader) {
@@ -226,6 +258,7 @@ ParameterSet ParameterSet::read(Reader reader) {
   if (auto object = maybe_object(reader, "shear")) set.shear = read_shear(*object);
   if (auto object = maybe_object(reader, "shear_axial")) set.shear_axial = read_shear(*object);
   if (auto object = maybe_object(reader, "moduli")) set.moduli = read_moduli(*object);
+  if (auto object = maybe_object(reader, "moduli_table")) set.moduli_table = read_moduli_table(*object);
   if (auto object = maybe_object(reader, "volumetric")) set.volumetric = read_group<VolumetricLaws>(*object);
   if (auto object = maybe_object(reader, "memory")) set.memory = read_memory(*object);
   reader.finish();
@@ -246,7 +279,9 @@ Json ParameterSet::to_json() const {
     json["moduli"] = group_json(*moduli);
     if (moduli->a_F) json["moduli"]["a_F"] = parameter_json(*moduli->a_F);
     if (moduli->a_s) json["moduli"]["a_s"] = parameter_json(*moduli->a_s);
+    if (moduli->F_v) json["moduli"]["F_v"] = parameter_json(*moduli->F_v);
   }
+  if (moduli_table) json["moduli_table"] = moduli_table_json(*moduli_table);
   if (volumetric) json["volumetric"] = group_json(*volumetric);
   if (memory) {
     json["memory"] = group_json(*memory);
@@ -274,6 +309,7 @@ std::vector<NamedParameter> ParameterSet::named() const {
     add("moduli", *moduli);
     if (moduli->a_F) list.push_back({"moduli.a_F", &*moduli->a_F, any_number()});
     if (moduli->a_s) list.push_back({"moduli.a_s", &*moduli->a_s, any_number()});
+    if (moduli->F_v) list.push_back({"moduli.F_v", &*moduli->F_v, above(0)});
   }
   if (volumetric) add("volumetric", *volumetric);
   if (memory) {
@@ -315,6 +351,19 @@ std::pair<const Parameter&, const Parameter&> ParameterSet::need_energy(const st
   const ModuliLaws& laws = need_moduli(why);
   if (!laws.a_F) throw Error(file, "moduli.a_F", "is missing; " + why + " needs it");
   return {*laws.a_F, *laws.a_s};
+}
+
+const Parameter& ParameterSet::need_constant_F_v(const std::string& why) const {
+  const ModuliLaws& laws = need_moduli(why);
+  if (!laws.F_v)
+    throw Error(file, "moduli.F_v",
+                "is missing; " + why + " needs it (predict writes F_v, that of a path's first row, say)");
+  return *laws.F_v;
+}
+
+const ModuliTable& ParameterSet::need_moduli_table(const std::string& why) const {
+  if (!moduli_table) throw Error(file, "moduli_table", "is missing; " + why + " needs it");
+  return moduli_table->table;
 }
 
 const VolumetricLaws& ParameterSet::need_volumetric(const std::string& why) const {

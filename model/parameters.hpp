@@ -13,6 +13,7 @@
 #include "grainlaw/element/material.hpp"
 #include "grainlaw/model/laws/jamming_density.hpp"
 #include "grainlaw/model/laws/moduli.hpp"
+#include "grainlaw/model/laws/moduli_table.hpp"
 #include "grainlaw/model/laws/packing_laws.hpp"
 #include "grainlaw/model/laws/saturation.hpp"
 
@@ -51,7 +52,15 @@ struct ShearLaws {
 struct ModuliLaws {
   Parameter p0, gamma_p, nu_c, g3, a_I, a_II, g_I, GB_max, Fv_min, Fv_alpha;
   std::optional<Parameter> a_F, a_s;  ///< of the law past the thesis; both or none
+  std::optional<Parameter> F_v;       ///< of the term constant_F_v
   Moduli values() const;
+};
+
+/// moduli_table: moduli by density in place of the laws.
+struct TabulatedLaws {
+  ModuliTable table;
+  std::string source = "fit";  ///< as of a Parameter
+  std::string note;
 };
 
 /// volumetric: -d ln F_dev/d ln nu under isotropic strain, past the thesis, which neglects it.
@@ -90,6 +99,7 @@ struct ParameterSet {
   std::optional<ShearLaws> shear;               ///< of D2
   std::optional<ShearLaws> shear_axial;         ///< past the thesis: of axisymmetric strain (D3, UNI)
   std::optional<ModuliLaws> moduli;
+  std::optional<TabulatedLaws> moduli_table;
   std::optional<VolumetricLaws> volumetric;
   std::optional<MemoryLaws> memory;
   std::string file;  ///< where it was read from, for error messages; may be empty
@@ -112,6 +122,9 @@ struct ParameterSet {
   const ModuliLaws& need_moduli(const std::string& why) const;
   /// moduli.a_F and moduli.a_s.
   std::pair<const Parameter&, const Parameter&> need_energy(const std::string& why) const;
+  /// moduli.F_v.
+  const Parameter& need_constant_F_v(const std::string& why) const;
+  const ModuliTable& need_moduli_table(const std::string& why) const;
   const VolumetricLaws& need_volumetric(const std::string& why) const;
   const MemoryLaws& need_memory(const std::string& why) const;
 };

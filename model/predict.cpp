@@ -80,11 +80,30 @@ Walked walk_legs(Point& point, const Path& path, const std::vector<Leg>& legs,
   return walked;
 }
 
-void conclude(Prediction& prediction, const std::vector<Leg>& legs, const Walked& walked,
+/// Where a row lies furthest beyond a saturation value, if by more than a per cent. Nothing keeps s_dev and
+/// F_dev within them where the volume changes.
+void tell_beyond_saturation(const Record& record, const char* column, const char* limit,
+                            const Saturation& law, std::vector<std::string>& warnings) {
+  double most = 1.01;
+  std::size_t row = record.rows();
+  for (std::size_t i = 0; i < record.rows(); ++i) {
+    const double times = std::abs(record[column][i]) / saturation(law, record["nu"][i]);
+    if (!(times > most)) continue;  // nor where there is no stress, or no limit
+    most = times;
+    row = i;
+  }
+  if (row < record.rows())
+    warnings.push_back(std::string(column) + " goes to " + shown(most) + " " + limit + " " +
+                       where(record["nu"][row], record["eps_dev"][row]));
+}
+
+void conclude(Prediction& prediction, const Laws& laws, const std::vector<Leg>& legs, const Walked& walked,
               const std::vector<Event>& events) {
   prediction.status = walked.status;
   prediction.end = walked.end;
   tell_events(events, prediction.warnings);
+  tell_beyond_saturation(prediction.record, "s_dev", "s_max", laws.s_max, prediction.warnings);
+  tell_beyond_saturation(prediction.record, "F_dev", "F_max", laws.F_max, prediction.warnings);
   tell_drift(pressure_drift(legs, walked.P_at_ends), prediction.warnings);
 }
 
@@ -145,7 +164,7 @@ SensitivePrediction predict_with(const Seeds& seeds, const ParameterSet& paramet
     events.push_back({e.jammed, e.nu.value, e.eps_vol.value, e.eps_dev.value});
     result.events.push_back({e.jammed, widened(e.nu), widened(e.eps_vol), widened(e.eps_dev)});
   }
-  conclude(result.prediction, legs, walked, events);
+  conclude(result.prediction, laws_of(start.law), legs, walked, events);
   result.idle = idle_names(result.prediction.record, names);
   return result;
 }
@@ -162,7 +181,7 @@ Prediction predict(const ParameterSet& parameters, const Path& path, const std::
   const Walked walked = walk_legs(point, path, legs, samples, [&](std::size_t leg, const State& state) {
     prediction.record.append(row_of(point.law(), state, leg));
   });
-  conclude(prediction, legs, walked, point.events());
+  conclude(prediction, laws_of(start.law), legs, walked, point.events());
   return prediction;
 }
 
@@ -182,7 +201,7 @@ Prediction predict_controlled(const ParameterSet& parameters, const Path& path,
   visit(0, point.state());
   const WalkedPath walked = walk_controlled(point, tolerance, path, options.rows_per_leg, visit);
   for (const auto& warning : walked.warnings) prediction.warnings.push_back(warning);
-  conclude(prediction, walked.legs,
+  conclude(prediction, laws_of(start.law), walked.legs,
            {end_status(walked.status, point.state()), walked.P_at_ends, point.state()}, point.events());
   return prediction;
 }

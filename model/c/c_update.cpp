@@ -3,6 +3,7 @@
 #include <array>
 #include <exception>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -103,32 +104,64 @@ int explain(grainlaw_context& context, const Points& points, std::size_t i) {
   return GRAINLAW_FAILED;
 }
 
+/// Points `first` to `last` together, where they are an ordinary block. False where they are none, or where
+/// anything is wrong with one of them: nothing has changed then.
+bool update_together(const CoaxialLaw& law, CoaxialLaw::Workspace& workspace, const Points& points,
+                     std::size_t first, std::size_t last, grainlaw_outcome& outcome) noexcept {
+  if (points.tangents || 2 * (last - first) < CoaxialLaw::block) return false;
+  const int status = guarded(Message{nullptr, 0}, GRAINLAW_BAD_ARGUMENT, [&] {
+    std::array<CoaxialState, CoaxialLaw::block> states;
+    for (std::size_t i = first; i < last; ++i) states[i - first] = read_state(points.state(i));
+    const std::span<CoaxialState> all(states.data(), last - first);
+    if (!law.update_block(all, points.increment(first), workspace, points.stress(first)))
+      return GRAINLAW_FAILED;
+    for (std::size_t i = first; i < last; ++i) {
+      const CoaxialState& moved = states[i - first];
+      write_state(moved, points.state(i));
+      if (!moved.point.jammed) ++outcome.unjammed;
+      if (points.statuses) points.statuses[i] = moved.point.jammed ? GRAINLAW_OK : GRAINLAW_UNJAMMED;
+    }
+    return GRAINLAW_OK;
+  });
+  return status == GRAINLAW_OK;
+}
+
+/// Point `i` alone.
+void update_alone(const CoaxialLaw& law, CoaxialLaw::Workspace& workspace, const Points& points,
+                  std::size_t i, grainlaw_outcome& outcome) noexcept {
+  const int status = guarded(Message{nullptr, 0}, GRAINLAW_BAD_ARGUMENT, [&] {
+    return number_of(
+        update(law, workspace, points.state(i), points.increment(i), points.stress(i), points.tangent(i))
+            .code);
+  });
+  if (points.statuses) points.statuses[i] = status;
+  if (status == GRAINLAW_UNJAMMED) ++outcome.unjammed;
+  if (status < 0 && outcome.failed++ == 0) outcome.first = i;
+}
+
 /// Points `first` to `last` in silence.
 grainlaw_outcome update_range(const CoaxialLaw& law, CoaxialLaw::Workspace& workspace, const Points& points,
                               std::size_t first, std::size_t last) noexcept {
   grainlaw_outcome outcome{0, 0, 0};
-  for (std::size_t i = first; i < last; ++i) {
-    const int status = guarded(Message{nullptr, 0}, GRAINLAW_BAD_ARGUMENT, [&] {
-      return number_of(
-          update(law, workspace, points.state(i), points.increment(i), points.stress(i), points.tangent(i))
-              .code);
-    });
-    if (points.statuses) points.statuses[i] = status;
-    if (status == GRAINLAW_UNJAMMED) ++outcome.unjammed;
-    if (status < 0 && outcome.failed++ == 0) outcome.first = i;
+  for (std::size_t begin = first; begin < last; begin += CoaxialLaw::block) {
+    const std::size_t end = std::min(begin + CoaxialLaw::block, last);
+    if (update_together(law, workspace, points, begin, end, outcome)) continue;
+    for (std::size_t i = begin; i < end; ++i) update_alone(law, workspace, points, i, outcome);
   }
   return outcome;
 }
 
-/// All points, in shares of equal size.
+/// All points, in shares of whole blocks, so that a point has the same answer on any number of threads.
 grainlaw_outcome update_all(grainlaw_context& context, const Points& points, std::size_t count, int threads) {
   const auto shares = static_cast<std::size_t>(threads);
+  const std::size_t blocks = (count + CoaxialLaw::block - 1) / CoaxialLaw::block;
   if (context.workspaces.size() < shares) context.workspaces.resize(shares);
   std::vector<grainlaw_outcome> outcomes(shares);
   auto work = [&](int thread) noexcept {
     const auto share = static_cast<std::size_t>(thread);
-    outcomes[share] = update_range(*context.law, context.workspaces[share], points, count * share / shares,
-                                   count * (share + 1) / shares);
+    const auto edge = [&](std::size_t s) { return std::min(count, blocks * s / shares * CoaxialLaw::block); };
+    outcomes[share] =
+        update_range(*context.law, context.workspaces[share], points, edge(share), edge(share + 1));
   };
   if (threads == 1) {
     work(0);
@@ -180,7 +213,8 @@ int grainlaw_update_many(grainlaw_context* context, size_t count, double* states
   return guarded(context, [&]() -> int {
     const Points points{states, stride, strain_increments, stresses, tangents, statuses};
     check_points(points, threads);
-    const auto team = static_cast<int>(std::clamp<std::size_t>(count, 1, static_cast<std::size_t>(threads)));
+    const std::size_t blocks = count / CoaxialLaw::block + 1;
+    const auto team = static_cast<int>(std::min(blocks, static_cast<std::size_t>(threads)));
     const grainlaw_outcome all = update_all(*context, points, count, team);
     if (outcome) *outcome = all;
     if (all.failed == 0) return all.unjammed > 0 ? GRAINLAW_UNJAMMED : GRAINLAW_OK;

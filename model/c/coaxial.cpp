@@ -118,11 +118,12 @@ CoaxialLaw::Parts CoaxialLaw::split(const Sym6& strain) const {
 const LightLaw& CoaxialLaw::law_at(double phi_J_laws, Workspace& workspace) const {
   if (workspace.phi_J_laws != phi_J_laws) {
     workspace.cache = {};
+    workspace.block.reset();
     workspace.moved.reset();
     if (phi_J_laws != laws_of(law_.law()).pressure.nu_c) {
       Law moved = law_.law();
       laws_of(moved) = with_jamming_density(laws_of(moved), phi_J_laws);
-      workspace.moved.emplace(std::move(moved), settings_.tolerance);
+      workspace.moved = std::make_unique<const LightLaw>(std::move(moved), settings_.tolerance);
     }
     workspace.phi_J_laws = phi_J_laws;
   }
@@ -165,6 +166,37 @@ Status CoaxialLaw::update(CoaxialState& state, const Sym6& increment, Workspace&
     *tangent = matrix_of(slopes, off_axis);
   }
   return moved.jammed ? Status{} : Status{Status::Code::unjammed, ""};
+}
+
+bool CoaxialLaw::update_block(std::span<CoaxialState> states, const double* increments, Workspace& workspace,
+                              double* stresses) const {
+  if (states.size() > block || !LightBatch::runs_in_lanes(law_.law())) return false;
+  std::array<double, block> eps_vol{}, eps_dev{};
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (states[i].phi_J_laws != states[0].phi_J_laws) return false;
+    Sym6 increment;
+    std::copy_n(increments + 6 * i, 6, increment.begin());
+    const Parts parts = split(read_strain(increment));
+    if (!(parts.off_axis <= settings_.coaxial_tolerance * parts.size)) return false;
+    eps_vol[i] = parts.eps_vol;
+    eps_dev[i] = parts.eps_dev;
+  }
+  const LightLaw& law = law_at(states[0].phi_J_laws, workspace);
+  if (!workspace.block) workspace.block = std::make_unique<LightBatch>(law, block, states[0].point);
+  LightBatch& batch = *workspace.block;
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::size_t of = std::min(i, states.size() - 1);  // copies of the last point fill the block
+    batch.set_state(i, states[of].point);
+    eps_vol[i] = eps_vol[of];
+    eps_dev[i] = eps_dev[of];
+  }
+  if (batch.update(eps_vol, eps_dev).failed > 0) return false;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    states[i].point = batch.state(i);
+    const Sym6 there = stress(states[i].point);
+    std::copy(there.begin(), there.end(), stresses + 6 * i);
+  }
+  return true;
 }
 
 }  // namespace grainlaw::model

@@ -4,12 +4,14 @@
 
 #include <array>
 #include <limits>
-#include <optional>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/element/tensor.hpp"
+#include "grainlaw/model/light/light_batch.hpp"
 #include "grainlaw/model/light/light_law.hpp"
 #include "grainlaw/model/parameters.hpp"
 
@@ -69,8 +71,9 @@ class CoaxialLaw {
   /// from nu last.
   struct Workspace {
     double phi_J_laws = std::numeric_limits<double>::quiet_NaN();
-    std::optional<LightLaw> moved;
+    std::unique_ptr<const LightLaw> moved;
     LightCache cache;
+    std::unique_ptr<LightBatch> block;  // of the law that is used
   };
 
   struct Begin {
@@ -87,6 +90,14 @@ class CoaxialLaw {
   /// alone. Throws Error for strains that are not finite.
   Status update(CoaxialState& state, const Sym6& increment, Workspace& workspace, Sym6& stress,
                 Matrix6* tangent) const;
+
+  /// So many points at most go through update_block() together.
+  static constexpr std::size_t block = 64;
+  /// The same for a block of points without tangents, in lanes: LightBatch's answers, within the tolerance.
+  /// False where that cannot be done, and then nothing has changed: the form has no lanes, the points have
+  /// several histories, an increment is refused, or one fails. Throws Error for strains that are not finite.
+  bool update_block(std::span<CoaxialState> states, const double* increments, Workspace& workspace,
+                    double* stresses) const;
 
  private:
   struct Parts;

@@ -41,13 +41,21 @@ struct BasicCoupled {
   Coefficients<Meet<P, T>> coefficients(const T& nu) const {
     using std::log;
     const Meet<P, T> e = log(nu / laws.moduli.nu_c);
-    const auto fabric = fabric_with_slope(laws.contacts, laws.g3, nu, e);
+    const auto fabric = fabric_at(nu, e);
     return {bulk_modulus(laws.moduli, fabric, e),
             fabric.F_v,
             initial_shear_ratio(laws.moduli, fabric.F_v),
             saturation(laws.s_max, nu),
             saturation(laws.F_max, nu),
             saturation(laws.beta_F, nu)};
+  }
+
+  /// B at nu (Eq. 4.11).
+  template <class T>
+  Meet<P, T> bulk_modulus_at(const T& nu) const {
+    using std::log;
+    const Meet<P, T> e = log(nu / laws.moduli.nu_c);
+    return bulk_modulus(laws.moduli, fabric_at(nu, e), e);
   }
 
   template <class T>
@@ -76,18 +84,29 @@ struct BasicCoupled {
     if (laws.terms.energy) return anisotropy_moduli_of_energy(laws.moduli, c.B, c.F_v, pressure, sigma, F);
     return {anisotropy_modulus_1(laws.moduli, c.B, F), anisotropy_modulus_2(laws.moduli, c.B, F)};
   }
+  template <class C, class Y>
+  Meet<C, Y> shear_modulus_of(const Coefficients<C>& c, const Y& sigma, const Y& F) const {
+    return shear_modulus(laws.moduli, c.B, c.ratio_ini, sigma, F);
+  }
 
   /// dy/dt along a stretch where the coefficients are `c`. False where it is not defined: P* <= 0, or
   /// saturation values that are not > 0.
   template <class C, class S, class Y>
   bool rate(const Coefficients<C>& c, const BasicStretch<S>& stretch, const BasicDirection<S>& direction,
             const Y* y, Y* dydt) const {
+    return rate_of(*this, c, stretch, direction, y, dydt);
+  }
+  /// The same with the moduli of a form that derives from this one, and its coefficients.
+  template <class Form, class Numbers, class S, class Y>
+  static bool rate_of(const Form& form, const Numbers& c, const BasicStretch<S>& stretch,
+                      const BasicDirection<S>& direction, const Y* y, Y* dydt) {
     using std::abs;
+    const auto& laws = form.laws;
     const Y &pressure = y[0], &sigma = y[1], &F = y[2];
     const S &v = stretch.eps_vol, &e = stretch.eps_dev;
     // s = sigma/P; the event at smallest_pressure comes first
     if (!(pressure > 0) && (!vanishes(e) || laws.terms.energy)) return false;
-    const auto [A1, A2] = anisotropy_moduli(c, pressure, sigma, F);
+    const auto [A1, A2] = form.anisotropy_moduli(c, pressure, sigma, F);
     dydt[0] = c.B * v;
     dydt[1] = A2 * v;
     dydt[2] = 0.0;
@@ -95,7 +114,7 @@ struct BasicCoupled {
     if (vanishes(e)) return true;
     if (!(c.s_max > 0 && c.F_max > 0 && c.beta_F >= 0)) return false;
     const auto q = stretch.q();
-    const auto G = shear_modulus(laws.moduli, c.B, c.ratio_ini, sigma, F);
+    const auto G = form.shear_modulus_of(c, sigma, F);
     const auto S_e = (1 - q * sigma / (pressure * c.s_max)) * (e / direction.S_I);
     dydt[0] = dydt[0] + A1 * S_e;
     dydt[1] = dydt[1] + G * S_e;
@@ -155,10 +174,15 @@ struct BasicCoupled {
   /// first_pressure.
   template <class T>
   Meet<P, T> jamming_density(const BasicState<T>& state) const {
+    return jamming_density_of(state, [&](const auto& nu) { return bulk_modulus_at(nu); });
+  }
+  /// The same where B is that of `bulk(nu)`.
+  template <class T, class Bulk>
+  Meet<P, T> jamming_density_of(const BasicState<T>& state, Bulk bulk) const {
     using std::exp;
     Meet<P, T> nu = unjamming_density();
     if (nu < state.phi_J) nu = state.phi_J;
-    return nu * exp(first_pressure / bulk_modulus(laws.moduli, laws.contacts, nu));
+    return nu * exp(first_pressure / bulk(nu));
   }
 
   /// Jams a point that has reached jamming_density() on this stretch, on the solution of Eq. 4.16 for P* ->
@@ -167,8 +191,11 @@ struct BasicCoupled {
   /// F_dev is proportional to the volume strain since phi_J.
   template <class T>
   void jam(BasicState<T>& state, const BasicStretch<T>& stretch) const {
+    jam_with(coefficients(state.nu), state, stretch);
+  }
+  template <class C, class T>
+  static void jam_with(const Coefficients<C>& c, BasicState<T>& state, const BasicStretch<T>& stretch) {
     const auto q = stretch.q();
-    const auto c = coefficients(state.nu);
     const auto ratio = stretch.eps_dev / stretch.eps_vol, slope = c.ratio_ini * ratio;
     state.jammed = true;
     state.direction = {.q = q, .eps_dev_0 = state.eps_dev};
@@ -181,6 +208,15 @@ struct BasicCoupled {
   template <class T>
   void begin_direction(BasicState<T>& state, const Sign<T>& q) const {
     begin_direction_of(laws, state, q);
+  }
+
+ private:
+  /// F_v and its slope by the contacts; with the term constant_F_v the slope alone, which is that of a probe.
+  template <class T>
+  FabricWithSlope<Meet<P, T>> fabric_at(const T& nu, const Meet<P, T>& e) const {
+    auto fabric = fabric_with_slope(laws.contacts, laws.g3, nu, e);
+    if (laws.terms.constant_F_v) fabric.F_v = laws.F_v;
+    return fabric;
   }
 };
 using Coupled = BasicCoupled<double>;

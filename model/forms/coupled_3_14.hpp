@@ -82,7 +82,7 @@ struct BasicCoupled314 : BasicCoupled<P> {
  private:
   template <class T>
   Meet<P, T> A_over_fabric(const T& nu) const {
-    return laws.moduli.a_I * bulk_modulus(laws.moduli, laws.contacts, nu);
+    return laws.moduli.a_I * this->bulk_modulus_at(nu);
   }
 };
 using Coupled314 = BasicCoupled314<double>;

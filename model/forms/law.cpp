@@ -16,6 +16,16 @@ std::optional<std::string> out_of_range(const char* name, const Saturation& law,
          (zero_allowed ? ">= 0" : "> 0");
 }
 
+std::optional<std::string> beyond_table(const Tabulated& form, const Stretch& stretch) {
+  for (const double nu : {stretch.nu(0), stretch.nu(1)}) {
+    if (form.covers(nu)) continue;
+    const double moved = form.laws.moduli.nu_c / form.nu_c;  // with another history
+    return "the table of moduli goes from nu = " + shown(moved * form.table.nu().front()) + " to " +
+           shown(moved * form.table.nu().back()) + ", the path to " + shown(nu);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 template <class P>
@@ -31,7 +41,10 @@ BasicLaw<P> make_law(const ParameterSet& parameters, const Choice& choice, const
     case Form::coupled_3_14:
       return BasicCoupled314<P>{{std::move(laws)}};
     default:
-      return BasicCoupled<P>{std::move(laws)};
+      if (!choice.terms.moduli_table) return BasicCoupled<P>{std::move(laws)};
+      const P nu_c = laws.moduli.nu_c;
+      return BasicTabulated<P>{
+          {std::move(laws)}, parameters.need_moduli_table("the " + name_of(choice) + " form"), nu_c};
   }
 }
 
@@ -43,12 +56,16 @@ Law make_law(const ParameterSet& parameters, const Choice& choice) {
   return make_law<double>(parameters, choice, [](const Parameter& parameter) { return parameter.value; });
 }
 
-std::optional<std::string> objection(const Laws& laws, Form form, const Stretch& stretch) {
+std::optional<std::string> objection(const Law& law, const Stretch& stretch) {
   constexpr double most = 1e6;
   if (std::abs(stretch.eps_dev) > most || std::abs(stretch.eps_vol) > 100)
     return "the strain must be at most 1e6 in eps_dev and 100 in eps_vol, got " + shown(stretch.eps_dev) +
            " and " + shown(stretch.eps_vol);
+  if (const auto* tabulated = std::get_if<Tabulated>(&law))
+    if (auto reason = beyond_table(*tabulated, stretch)) return reason;
   if (stretch.eps_dev == 0) return std::nullopt;
+  const Laws& laws = laws_of(law);
+  const Form form = form_of(law);
   for (const double nu : {stretch.nu(0), stretch.nu(1)}) {  // Eq. 2.20 is monotonic between
     if (auto reason = out_of_range("s_max", laws.s_max, nu, false)) return reason;
     if (auto reason = out_of_range("F_max", laws.F_max, nu, false)) return reason;

@@ -10,14 +10,15 @@
 #include "grainlaw/model/forms/coupled_3_14.hpp"
 #include "grainlaw/model/forms/memory.hpp"
 #include "grainlaw/model/forms/reduced.hpp"
+#include "grainlaw/model/forms/tabulated.hpp"
 #include "grainlaw/model/state.hpp"
 #include "grainlaw/model/status.hpp"
 
 namespace grainlaw::model {
 
 template <class P>
-using BasicLaw =
-    std::variant<BasicReducedClosed<P>, BasicReduced<P>, BasicCoupled<P>, BasicMemory<P>, BasicCoupled314<P>>;
+using BasicLaw = std::variant<BasicReducedClosed<P>, BasicReduced<P>, BasicCoupled<P>, BasicTabulated<P>,
+                              BasicMemory<P>, BasicCoupled314<P>>;
 using Law = BasicLaw<double>;
 
 /// Throws Error where the set lacks what the form needs.
@@ -59,12 +60,9 @@ std::optional<std::string> not_finite(const BasicState<T>& state, double eps_vol
   return "the strain is not a number: eps_vol = " + shown(eps_vol) + ", eps_dev = " + shown(eps_dev);
 }
 
-/// What keeps the laws from this stretch, in words ("s_max is -0.01 at nu = 0.9 and must be > 0"), if
+/// What keeps the law from this stretch, in words ("s_max is -0.01 at nu = 0.9 and must be > 0"), if
 /// anything.
-std::optional<std::string> objection(const Laws& laws, Form form, const Stretch& stretch);
-inline std::optional<std::string> objection(const Law& law, const Stretch& stretch) {
-  return objection(laws_of(law), form_of(law), stretch);
-}
+std::optional<std::string> objection(const Law& law, const Stretch& stretch);
 
 /// Isotropic contact quantities of a state. Unjammed: no contacts, C_star is NaN (undefined). Where the point
 /// is jammed below the density at which the contact law begins, C, C_star and f_NR are those of that density.

@@ -33,6 +33,8 @@ class LightBatch {
     std::size_t first = 0;   ///< the first of them
     Status status;           ///< of the first, else ok
   };
+  /// Whether points of this law run eight at a time; else each goes through LightLaw.
+  static bool runs_in_lanes(const Law& law) { return std::holds_alternative<Coupled>(law); }
   /// The instruction set whose vectors this machine runs it on: "avx512", "avx2" or "baseline".
   static std::string vectors();
 

@@ -1,9 +1,12 @@
 #include "grainlaw/model/walk/sensitive_point.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 
+#include "grainlaw/model/walk/pieces.hpp"
 #include "grainlaw/model/walk/system_of.hpp"
 #include "grainlaw/model/walk/walk.hpp"
 
@@ -87,7 +90,9 @@ template <class S, class Plain>
 struct BySensitiveIntegrator {
   const Plain& plain;
   Integrator& integrator;
+  Integrator& plain_integrator;
   std::size_t count;
+  double rtol;
 
   template <class Form, class Rates, class Numbers>
   bool to_event(const Form& form, const BasicStretch<S>& stretch, const BasicDirection<S>& direction,
@@ -99,6 +104,79 @@ struct BySensitiveIntegrator {
           plain, values, direction_values, rates,
           S(form.distance_to_event(form.coefficients(stretch.nu(t), direction), direction, y.data())), t, y);
     return false;  // the others have no events
+  }
+
+  /// The volume fraction less that at which the contacts of the pressure law begin, of a memory m.
+  template <class M>
+  M above_contacts(const Stretch& stretch, const Direction& direction, double t, const M& m) const {
+    const double nu = stretch.nu(t);
+    return nu - plain.curve_of(plain.coefficients(nu, direction).phi_H, m).contacts.nu_c;
+  }
+  /// Where it passes 0 before the stretch or its jammed part ends: found by an integration of the values
+  /// alone.
+  Status find_crossings(System system, const Stretch& stretch, const Direction& direction,
+                        const double* begin, std::vector<Crossing>& crossings) const {
+    if constexpr (std::is_same_v<Memory, Plain>) {
+      if (!direction.jammed) return {};
+      const auto above = [&](double t, const double* y) {
+        return above_contacts(stretch, direction, t, y[2]);
+      };
+      system.others = {above};
+      std::array<double, Plain::size> y;
+      std::copy_n(begin, y.size(), y.begin());
+      bool rises = above(0, begin) < 0;
+      for (double t = 0; t < 1; rises = !rises) {
+        if (Status status = plain_integrator.start(system, t, 1, y.data()); status.failed()) return status;
+        const auto arrival = plain_integrator.advance(1, y.data());
+        if (arrival.status.failed()) return arrival.status;
+        if (!arrival.event || arrival.which == 1 || !(arrival.t > t && arrival.t < 1)) break;
+        t = arrival.t;
+        crossings.push_back({t, rises});
+      }
+    }
+    return {};
+  }
+
+  /// Over the gap before a crossing, from `from`. m is moved by its error to where the contacts begin, or
+  /// rather some roundings beyond, for there the derivatives are infinite. On the way there from above they
+  /// go as a + b h^(alpha - 1), h what is left of it: a and b follow from the rates at `from` and half-way.
+  template <std::size_t size>
+  bool step_over(const System& system, const Stretch& stretch, const Direction& direction, double from,
+                 const Crossing& to, Variables<S, size>& at) const {
+    if constexpr (std::is_same_v<Memory, Plain>) {
+      const double gap = to.t - from;
+      std::array<double, size> dydt;
+      std::vector<double> first(at.s.size()), second(at.s.size());
+      const auto rates = [&](double t, std::vector<double>& dsdt) {
+        return system.rate(t, at.y.data(), dydt.data()) &&
+               system.sensitivity_rate(t, at.y.data(), at.s.data(), dsdt.data());
+      };
+      const auto move = [&](double by) {
+        for (std::size_t i = 0; i < size; ++i) at.y[i] += by * dydt[i];
+      };
+      if (!rates(from, first)) return false;
+      if (to.rises) {
+        move(gap);
+        for (std::size_t i = 0; i < first.size(); ++i) at.s[i] += gap * first[i];
+      } else {
+        const double nu = stretch.nu(from), high = above_contacts(stretch, direction, from, at.y[2]),
+                     alpha = plain.curve_of(plain.coefficients(nu, direction).phi_H, at.y[2]).contacts.alpha;
+        move(gap / 2);
+        const double low = above_contacts(stretch, direction, from + gap / 2, at.y[2]);
+        if (!(high > low && low > 0) || !rates(from + gap / 2, second)) return false;
+        move(gap / 2);
+        // What is left of the way, in t, as the volume fraction above the contacts has it.
+        const double h = high / (high - low) * gap / 2, rest = h - gap / 2;
+        const double at_first = std::pow(h, alpha - 1), at_second = std::pow(rest, alpha - 1);
+        for (std::size_t i = 0; i < first.size(); ++i) {
+          const double b = (second[i] - first[i]) / (at_second - at_first), a = first[i] - b * at_first;
+          at.s[i] += a * gap + b * std::pow(h, alpha) / alpha;
+        }
+      }
+      const Dual<1> above = above_contacts(stretch, direction, to.t, Dual<1>(at.y[2], 0));
+      if (above.slope[0] != 0) at.y[2] -= (above.value - (to.rises ? 1e-13 : -1e-13)) / above.slope[0];
+    }
+    return true;
   }
 
   template <class Form, class NextSample, class Visit>
@@ -121,13 +199,33 @@ struct BySensitiveIntegrator {
       return true;
     };
     Both at(form.variables(begin), count);
-    if (Status status = integrator.start(system, 0, 1, at.y.data(), at.s.data()); status.failed())
+    std::vector<Crossing> crossings;
+    if (Status status = find_crossings(system, values, direction, at.y.data(), crossings); status.failed())
       return {status, 0.0};
+    const std::vector<Piece> pieces = pieces_of(crossings, std::max(1e-6, 100 * rtol));
+    auto piece = pieces.begin();
+    System mapped;
+    const auto start = [&] {
+      mapped = over(*piece, system, size, count);
+      return integrator.start(mapped, 0, 1, at.y.data(), at.s.data());
+    };
+    if (Status status = start(); status.failed()) return {status, 0.0};
     for (bool last = false; !last;) {
       S t = next_sample();
       last = !(t <= 1);
       if (last) t = 1.0;
-      const auto arrival = integrator.advance(t.value, at.y.data(), at.s.data());
+      auto arrival = integrator.advance(piece->tau(t.value), at.y.data(), at.s.data());
+      while (!arrival.status.failed() && !arrival.event && t.value > piece->end) {
+        const double from = piece->end;
+        ++piece;
+        const Crossing& crossing = crossings[static_cast<std::size_t>(piece - pieces.begin()) - 1];
+        if (!step_over<size>(system, values, direction, from, crossing, at))
+          return {{Status::Code::failed, "the law is not defined where its contacts begin"}, from};
+        if (t.value < piece->begin) t = piece->begin;
+        if (Status status = start(); status.failed()) return {status, piece->begin};
+        arrival = integrator.advance(piece->tau(t.value), at.y.data(), at.s.data());
+      }
+      arrival.t = arrival.event || arrival.status.failed() ? piece->t(arrival.t) : t.value;
       if (arrival.status.failed()) return {arrival.status, arrival.t};
       // Where a sample or an event lies depends on the variables too.
       Numbers y = Both::joined(at.y.data(), at.s.data(), count);
@@ -151,11 +249,17 @@ struct BySensitiveIntegrator {
 template <class S>
 SensitivePoint<S>::SensitivePoint(Law law, BasicLaw<S> slopes_law, const BasicState<S>& start,
                                   Tolerance tolerance, const std::vector<double>& scales, Method method)
-    : law_(std::move(law)), slopes_law_(std::move(slopes_law)), state_(start), count_(scales.size()) {
+    : law_(std::move(law)),
+      slopes_law_(std::move(slopes_law)),
+      state_(start),
+      count_(scales.size()),
+      rtol_(tolerance.rtol) {
   std::visit(
       [&]<class Form>(const Form&) {
-        if constexpr (Form::size > 0)
+        if constexpr (Form::size > 0) {
           integrator_.emplace(static_cast<int>(Form::size), tolerance, method, scales);
+          plain_.emplace(static_cast<int>(Form::size), tolerance, method);
+        }
       },
       law_);
 }
@@ -184,7 +288,7 @@ Status SensitivePoint<S>::walk(double eps_vol, double eps_dev, std::span<const d
           return along(form, Closed{});
         else
           return along(form, BySensitiveIntegrator<S, Form<double>>{std::get<Form<double>>(law_),
-                                                                    *integrator_, count_});
+                                                                    *integrator_, *plain_, count_, rtol_});
       },
       slopes_law_);
   if (!status.failed()) return status;

@@ -49,7 +49,8 @@ class SensitivePoint {
   BasicLaw<S> slopes_law_;
   BasicState<S> state_;
   std::size_t count_;
-  std::optional<Integrator> integrator_;  // none where there is nothing to integrate
+  double rtol_;
+  std::optional<Integrator> integrator_, plain_;  // none where there is nothing to integrate; of values alone
   std::vector<BasicSensitiveEvent<S>> events_;
 };
 

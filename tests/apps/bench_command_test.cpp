@@ -54,9 +54,12 @@ TEST_F(BenchCommand, ModelWritesItsTableAndPicture) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("bytes"));
   const std::string csv = read("m/model-speed.csv");
-  for (const char* part : {"path,\"monotonic\",CVODE BDF,1e-06", "path,\"cycles\",light,",
-                           "path,\"jamming\",RODAS,", "increment,\"D2 cycle\",CVODE Adams,",
-                           "batch,\"at rest\",light,1e-06,64,2,", "term,\"tangent\",", "sensitivities"})
+  for (const char* part :
+       {"path,\"monotonic\",CVODE BDF,1e-06", "path,\"cycles\",light,", "path,\"jamming\",RODAS,",
+        "increment,\"D2 cycle\",CVODE Adams,", "batch,\"at rest\",light,1e-06,64,2,",
+        "term,\"coupled, tangent, volume at rest\",", "term,\"memory, volume moving\",",
+        "term,\"coupled+constant_F_v, volume moving\",", "sensitivities",
+        "host,\"grainlaw_update_many\",light,1e-06,512,2,"})
     EXPECT_THAT(csv, HasSubstr(part));
   EXPECT_THAT(read("m/model-speed.svg"), HasSubstr("</svg>"));
   EXPECT_GE(load_json(folder / "m/model-speed.json").at("state_bytes").get<int>(), 14 * 8 - 7);

@@ -115,6 +115,11 @@ TEST_F(Predict, FollowsATableOfStrains) {
     EXPECT_NEAR(again["sigma_dev"][i], walked["sigma_dev"][i], 1e-8) << i;
   write("bare.csv", "eps_vol,eps_dev\n0,0\n0,0.1\n");
   EXPECT_EQ(predict({"--nu", "0.7", "--P", "0.02"}, "bare.csv")["P"][0], 0.02);
+  // k/(2<r>) of the thesis's grains is 1e8 kg/s2 over 2 mm: 50 GPa.
+  EXPECT_DOUBLE_EQ(predict({"--nu", "0.7", "--P", "1e6kPa"}, "bare.csv")["P"][0], 0.02);
+  EXPECT_TRUE(
+      refuses(run({"predict", "data/thesis/parameters.json", "bare.csv", "--nu", "0.7", "--P", "50"}),
+              {"--P: must be a number between 0 and 1, over k* = 50000000 kPa, or in kPa with that unit"}));
   EXPECT_TRUE(
       refuses(run({"predict", "data/thesis/parameters.json", "bare.csv"}), {"bare.csv: nu: is missing"}));
   write("bad.csv", "eps_vol,eps_dev\n0,0\n0,\n");

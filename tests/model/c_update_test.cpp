@@ -1,4 +1,5 @@
 // The C interface walks: one point and many, on threads with a context each, and what failed is replayed.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -99,6 +100,53 @@ TEST_F(CUpdate, ManyPointsAsOneByOne) {
       EXPECT_EQ(field.stresses, alone.stresses);
       EXPECT_EQ(field.tangents, alone.tangents);
     }
+}
+
+/// Of one history they go through lanes: within the tolerance of one by one, and the same to the last bit on
+/// any number of threads.
+TEST_F(CUpdate, ManyPointsOfOneHistory) {
+  constexpr std::size_t count = 1000, stride = 22;
+  std::vector<double> begin(count * stride, 13.0), strains;
+  for (std::size_t i = 0; i < count; ++i) {
+    const char* name = "nu";
+    const double nu = 0.66 + 0.0001 * static_cast<double>(i), e = 1e-4 * (1 + static_cast<double>(i % 7));
+    ASSERT_GE(grainlaw_start(context, 1, &name, &nu, &begin[i * stride], 20), 0);
+    strains.insert(strains.end(), {1e-5 - e, 1e-5 + e, 1e-5, 0, 0, 0});
+  }
+  const auto walked = [&](int threads) {
+    std::vector<double> states = begin, stresses(6 * count);
+    std::vector<int> statuses(count);
+    grainlaw_outcome outcome{};
+    for (int step = 0; step < 10; ++step) {
+      if (step == 7)
+        for (double& e : strains) e = -e;  // a reversal
+      EXPECT_EQ(grainlaw_update_many(context, count, states.data(), stride, strains.data(), stresses.data(),
+                                     nullptr, threads, statuses.data(), &outcome),
+                GRAINLAW_UNJAMMED);
+      EXPECT_EQ(outcome.failed, 0U);
+      EXPECT_EQ(outcome.unjammed,
+                static_cast<std::size_t>(std::count(statuses.begin(), statuses.end(), GRAINLAW_UNJAMMED)));
+    }
+    for (double& e : strains) e = -e;
+    states.insert(states.end(), stresses.begin(), stresses.end());
+    return states;
+  };
+  const std::vector<double> one = walked(1), several = walked(3);
+  EXPECT_EQ(one, several);
+  std::vector<double> alone = begin;
+  Six there{};
+  for (std::size_t i = 0; i < count; ++i) {
+    for (int step = 0; step < 10; ++step) {
+      Six e;
+      for (std::size_t k = 0; k < 6; ++k) e[k] = (step < 7 ? 1 : -1) * strains[6 * i + k];
+      EXPECT_GE(grainlaw_update(context, &alone[i * stride], 20, e.data(), there.data(), nullptr), 0);
+    }
+    for (std::size_t k = 0; k < 20; ++k)
+      EXPECT_NEAR(one[i * stride + k], alone[i * stride + k], k == 5 ? INFINITY : 1e-7)
+          << i << " entry " << k;
+    EXPECT_EQ(one[i * stride + 20], 13) << "what lies between states is the caller's";
+    EXPECT_NEAR(one[count * stride + 6 * i], there[0], 1e-9);
+  }
 }
 
 TEST_F(CUpdate, ManyPointsNameTheFirstThatFails) {

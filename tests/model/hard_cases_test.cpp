@@ -17,10 +17,11 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr Form forms[] = {Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14};
+constexpr Form forms[] = {Form::reduced_closed, Form::reduced, Form::coupled, Form::memory,
+                          Form::coupled_3_14};
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-MaterialPoint point_at(double nu, Form form, const ParameterSet& set = thesis(),
+MaterialPoint point_at(double nu, Form form, const ParameterSet& set = thesis_with_memory(),
                        Tolerance tolerance = {1e-10, 1e-13}, Method method = Method::bdf) {
   Path path;
   path.start.nu = nu;
@@ -90,7 +91,7 @@ TEST(HardCases, StiffRates) {
   for (const double beta : {1e3, 1e4})
     for (const Form form : forms) {
       SCOPED_TRACE(name_of(form) + " with beta " + to_text(beta));
-      ParameterSet set = thesis();
+      ParameterSet set = thesis_with_memory();
       for (auto* law : {&*set.shear->beta_s, &*set.shear->beta_F}) {
         law->Q_max.value = beta;
         law->Q_v.value = 0;
@@ -111,7 +112,7 @@ TEST(HardCases, StiffRates) {
 
 TEST(HardCases, NegativeGammaP) {
   for (const Form form : forms) {
-    ParameterSet set = thesis();
+    ParameterSet set = thesis_with_memory();
     for (auto& [mode, row] : set.isotropic) row.gamma_p.value = -0.5;
     set.moduli->gamma_p.value = -0.5;
     MaterialPoint stiffer = point_at(0.7, form, set), softer = point_at(0.7, form);
@@ -141,7 +142,7 @@ TEST(HardCases, NumbersThatAreNone) {
       {"mode": "uni", "amount": -0.1}, {"mode": "uni", "amount": 0.15}]})");
   for (const Form form : forms) {
     std::map<const Parameter*, bool> used;
-    const ParameterSet set = thesis();
+    const ParameterSet set = thesis_with_memory();
     make_law<double>(set, {form, {}}, [&](const Parameter& p) {
       used[&p] = true;
       return p.value;

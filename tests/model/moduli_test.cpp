@@ -2,9 +2,12 @@
 // from.
 #include "grainlaw/model/laws/moduli.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "checks.hpp"
+#include "grainlaw/model/forms/law.hpp"
+#include "walks.hpp"
+#include "written.hpp"
 
 namespace grainlaw::model {
 namespace {
@@ -52,6 +55,59 @@ TEST(Moduli, InitialShearRatioGrowsFromNothingToItsCeiling) {
   EXPECT_EQ(initial_shear_ratio(table, 4.2), 0);
   EXPECT_NEAR(initial_shear_ratio(table, 4.2 + 1.9), 0.51 * (1 - std::exp(-1.0)), 1e-15);
   EXPECT_NEAR(initial_shear_ratio(table, 1e3), 0.51, 1e-15);
+}
+
+/// Eq. 4.16 with one F_v in Eqs. 4.11 and 4.14.
+struct OneFabric : Written {
+  static constexpr double F_v = 6.2;
+  void operator()(const Vector& y, Vector& dy, double t) const {
+    const double n = nu(t), B = bulk(n) * F_v / fabric(n);
+    const double S = (1 - q() * y[1] / y[0] / s_max(n)) / S_I;
+    Written::operator()(y, dy, t);
+    dy[0] = B * v + 0.66 * B * y[2] * S * e;
+    dy[1] = B * y[2] * v + B * (0.51 * (1 - std::exp(-(F_v - 4.2) / 1.9)) - 86 * y[1] * y[2]) * S * e;
+  }
+};
+
+ParameterSet with_one_fabric(double F_v) {
+  ParameterSet set = thesis();
+  set.moduli->F_v.emplace().value = F_v;
+  return set;
+}
+
+TEST(ConstantFabric, AgainstAnIndependentIntegration) {
+  const Prediction p =
+      walk(R"({"start": {"nu": 0.69, "P": 0.012, "sigma_dev": -0.001, "F_dev": 0.03}, "segments": [
+               {"mode": "uni", "amount": 0.12}, {"mode": "uni", "amount": -0.08}]})",
+           choice_of("coupled+constant_F_v"), 20, with_one_fabric(OneFabric::F_v));
+  expect_agreement<OneFabric>(0.69, {0.012, -0.001, 0.03}, {{0.12, 0.12}, {-0.08, -0.08}}, p, 20);
+}
+
+/// The thesis holds F_v constant in undrained shear, where F_v(nu) is.
+TEST(ConstantFabric, ChangesNothingInUndrainedShear) {
+  const double F_v = isotropic_fabric(laws_of(thesis(), Form::coupled).contacts, 1.22, 0.711);
+  const char* path = R"({"start": {"nu": 0.711}, "segments": [{"mode": "d2", "amount": 0.2},
+                         {"mode": "d2", "amount": -0.1}]})";
+  for (const Form form : {Form::coupled, Form::coupled_3_14}) {
+    const Choice choice{form, {.constant_F_v = true}};
+    const Prediction off = walk(path, form), on = walk(path, choice, 20, with_one_fabric(F_v)),
+                     other = walk(path, choice, 20, with_one_fabric(0.9 * F_v));
+    for (const char* column : {"P", "sigma_dev", "F_dev"}) {
+      EXPECT_LT(difference(off, on, column), 1e-12) << name_of(choice) << " " << column;
+      EXPECT_EQ(difference(off, walk(path, form, 20, with_one_fabric(1.0)), column), 0)
+          << "off unless asked for";
+    }
+    EXPECT_GT(difference(off, other, "sigma_dev"), 1e-5);
+  }
+}
+
+TEST(ConstantFabric, NeedsItsNumber) {
+  EXPECT_THAT(refusal([] { make_law(thesis(), choice_of("coupled+constant_F_v")); }),
+              testing::HasSubstr("moduli.F_v: is missing; the coupled+constant_F_v form needs it"));
+  EXPECT_THAT(refusal([] { choice_of("memory+constant_F_v"); }),
+              testing::HasSubstr("memory takes the terms"));
+  const ParameterSet set = with_one_fabric(6.5);
+  EXPECT_EQ(ParameterSet::read(Reader(set.to_json(), "p.json")).moduli->F_v->value, 6.5);
 }
 
 }  // namespace

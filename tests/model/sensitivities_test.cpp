@@ -98,7 +98,7 @@ double largest(const std::vector<double>& x) {
 /// out.
 void expect_derivatives(const Case& c, Form form, Terms terms = {}) {
   SCOPED_TRACE(std::string(c.name) + ", " + name_of(Choice{form, terms}));
-  const auto names = names_of_sensitivities(c.set, path_of(c.path), {form, {}});
+  const auto names = names_of_sensitivities(c.set, path_of(c.path), {form, terms});
   const auto s =
       predict_sensitivities(c.set, path_of(c.path), names, {form, exact_rtol, exact_atol, 4, terms});
   ASSERT_FALSE(s.prediction.status.failed()) << s.prediction.status.message;
@@ -134,26 +134,17 @@ void expect_derivatives(const Case& c, Form form, Terms terms = {}) {
 /// The form with memory, through over-compression and loss of contact, and through shear jamming and back.
 /// Its rates have kinks ((G/B)_ini is cut at F_v,min), which derivatives cannot pass at 1e-12.
 TEST(Sensitivities, OfTheFormWithMemory) {
-  ParameterSet set = thesis();
-  set.memory->eps_c.emplace().value = 0.042;
-  set.memory->hold.emplace().value = 0.4;
-  // Where contacts begin at another density than the pressure, shear jamming crosses it, and C has no slope.
-  ParameterSet one_density = set;
-  for (const char* row : {"iso", "d2"})
-    one_density.isotropic.at(row).nu_c_contacts.value = one_density.isotropic.at(row).nu_c.value;
+  const ParameterSet set = thesis_with_memory();
   const Case paths[] = {
       {"over-compression", R"({"start": {"nu": 0.69}, "segments": [{"mode": "uni", "amount": 0.03},
           {"mode": "uni", "amount": -0.1}, {"mode": "uni", "amount": 0.15}]})",
        set},
       {"shear jamming", R"({"start": {"nu": 0.661}, "segments": [{"mode": "d2", "amount": 0.3},
           {"mode": "d2", "amount": -0.056}, {"mode": "d2", "amount": -0.3}]})",
-       one_density}};
+       set}};
   for (const Case& c : paths) {
     SCOPED_TRACE(c.name);
-    auto names = names_of_sensitivities(c.set, path_of(c.path), {Form::memory, {}});
-    std::erase_if(names, [](const std::string& name) { return name.ends_with("nu_c_contacts"); });
-    if (c.name == std::string("shear jamming"))  // the density of those contacts moves with both rows' nu_c
-      std::erase_if(names, [](const std::string& name) { return name.ends_with(".nu_c"); });
+    const auto names = names_of_sensitivities(c.set, path_of(c.path), {Form::memory, {}});
     const auto s = predict_sensitivities(c.set, path_of(c.path), names, {Form::memory, 1e-8, 1e-12, 4});
     ASSERT_FALSE(s.prediction.status.failed()) << s.prediction.status.message;
     EXPECT_GE(s.events.size(), 2U);
@@ -180,6 +171,19 @@ TEST(Sensitivities, OfFabricUnderVolumeChange) {
   set.volumetric->decompression.value = 0.7;
   for (const Form form : {Form::coupled, Form::reduced})
     expect_derivatives({"fabric", simple, set}, form, {.volumetric = true});
+}
+
+TEST(Sensitivities, OfTheTermsOfModuli) {
+  ParameterSet set = thesis();
+  set.moduli->F_v.emplace().value = 6.2;
+  const std::vector<double> nu{0.68, 0.7, 0.72, 0.76};
+  set.moduli_table.emplace().table = ModuliTable(nu, {{{0.33, 0.4, 0.46, 0.56},
+                                                       {0.8, 0.76, 0.7, 0.61},
+                                                       {1.2, 1.2, 1.1, 1},
+                                                       {0.25, 0.37, 0.42, 0.46},
+                                                       {13, 120, 142, 100}}});
+  for (const Terms terms : {Terms{.constant_F_v = true}, Terms{.moduli_table = true}})
+    expect_derivatives({"moduli", simple, set}, Form::coupled, terms);
 }
 
 class SensitivitiesOf : public testing::TestWithParam<Case> {};
