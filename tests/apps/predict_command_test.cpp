@@ -173,6 +173,22 @@ TEST_F(Predict, EnvelopeOfTheEndOfAPath) {
               {"--envelope: must be a number > 0 and <= 0.1"}));
 }
 
+TEST_F(Predict, TheMinimalFormIsEvaluated) {
+  const std::string set = "data/thesis/near-jamming.json";
+  const Record record = predict({"--form", "minimal", "--rows", "20"}, "data/paths/shear-jamming.json", set);
+  EXPECT_EQ(record.columns(), prediction_columns());
+  ASSERT_EQ(record.rows(), 101u);
+  EXPECT_EQ(record["P"][10], 0);  // 0.14 of strain: the thesis jams at 0.1444
+  EXPECT_GT(record["P"][11], 0);
+  EXPECT_NEAR(record["s_dev"].back(), 0.21, 0.01);
+  EXPECT_THAT(last.err, HasSubstr("memory.phi_cr is missing"));
+  EXPECT_TRUE(refuses(
+      run({"predict", set, "data/paths/shear-jamming.json", "--form", "minimal", "--envelope", "1e-4"}),
+      {"--form: minimal has no rates"}));
+  EXPECT_TRUE(refuses(run({"predict", set, "data/paths/triaxial.json", "--form", "minimal"}),
+                      {"--form: minimal follows a path by strain"}));
+}
+
 TEST_F(Predict, EveryThesisSetPredicts) {
   for (const char* set : {"w-1.5", "w-2.0", "w-3.0", "w-10.0", "near-jamming"})
     EXPECT_GT(predict({"--form", "reduced_closed", "--rows", "3"}, "data/paths/uni.json",
