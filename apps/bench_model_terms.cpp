@@ -36,8 +36,8 @@ ParameterSet completed(ParameterSet set) {
     fill(m.F_v, 6.5);
   }
   if (set.memory) {
-    fill(set.memory->eps_c, 0.076);
-    fill(set.memory->eps_r, 0.0123);
+    fill(set.memory->eps_c, 0.042);
+    fill(set.memory->hold, 0.4);
   }
   if (!set.volumetric) {
     set.volumetric.emplace();

@@ -79,7 +79,11 @@ std::string rows(const SceneCost& cost) {
   for (const auto& observer : cost.observers)
     text += line(observer.name, observer.seconds_per_row, observer.bytes);
   if (cost.observers.empty()) text += "  nothing else: measure.observe is empty\n";
-  return text + fmt::format("snapshots: {} of {}\n\n", cost.snapshots, size_text(cost.snapshot_bytes));
+  text += fmt::format("snapshots: {} of {}\n", cost.snapshots, size_text(cost.snapshot_bytes));
+  if (cost.moduli > 0)
+    text += fmt::format("moduli: {} states, each about {}: balance and linear response\n", cost.moduli,
+                        short_time(cost.moduli_seconds));
+  return text + "\n";
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
 // grainlaw infer-phij: the jamming density along a measured path.
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/apps/commands.hpp"
 #include "grainlaw/apps/locations.hpp"
 #include "grainlaw/apps/terminal.hpp"
+#include "grainlaw/element/error.hpp"
 #include "grainlaw/element/record.hpp"
 #include "grainlaw/model/infer_jamming.hpp"
 
@@ -25,8 +28,11 @@ int run(const Arguments& arguments) {
                                          ? find_thesis(thesis_size_ratio)
                                          : std::filesystem::path(arguments.parameters);
   if (!arguments.output.empty()) check_output("-o", arguments.output, {arguments.record, file});
+  if (const std::vector<std::string> rows{"iso", "uni", "d2", "d3"};
+      std::find(rows.begin(), rows.end(), arguments.mode) == rows.end())
+    throw Error("", "--mode", "must be one of iso, uni, d2, d3, got \"" + arguments.mode + "\"");
   const auto set = model::ParameterSet::load(file);
-  const model::PackingLaw& law = set.packing(arguments.mode, "infer-phij inverts its laws");
+  const model::PackingLaw& law = set.packing(arguments.mode, "infer-phij, which inverts its laws,");
   const Record record = Record::read_csv(arguments.record, {"nu", "P"});
   const Record inferred = model::infer_jamming_density(record, law);
   if (arguments.output.empty())

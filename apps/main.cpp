@@ -58,6 +58,24 @@ int complain_usage(const CLI::App& program, const std::string& what) {
   return bad_input;
 }
 
+/// The commands of a program, or of a command that has some itself.
+std::string names_within(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// What is wrong with a command line.
+std::string reason(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
+  if (argc > 1 && argv[1][0] == '-') return fmt::format("unknown option {}", argv[1]);
+  const auto chosen = program.get_subcommands();
+  if (!chosen.empty() && chosen.front()->get_subcommands().empty())
+    if (const std::string known = names_within(*chosen.front()); !known.empty())
+      return fmt::format("must be followed by one of {}", known);
+  return error.what();
+}
+
 int run_command_line(int argc, char** argv) {
   CLI::App program(description, "grainlaw");
   program.footer(examples);
@@ -73,19 +91,15 @@ int run_command_line(int argc, char** argv) {
                         [&](const auto* known) { return known->get_name() == name; });
   };
   if (argc > 1 && argv[1][0] != '-' && is_unknown(argv[1]))
-    return complain_usage(program, fmt::format("unknown command \"{}\"; known are calibrate, simulate, "
-                                               "predict, fit, polish, report, probe, infer-phij, export, "
-                                               "replay, bench",
-                                               argv[1]));
+    return complain_usage(
+        program, fmt::format("unknown command \"{}\"; known are {}", argv[1], names_within(program)));
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
     write_stdout(success.get_name() == "CallForVersion" ? success.what() : program.help());
     return all_well;
   } catch (const CLI::ParseError& error) {
-    if (argc > 1 && argv[1][0] == '-')
-      return complain_usage(program, fmt::format("unknown option {}", argv[1]));
-    return complain_usage(program, error.what());
+    return complain_usage(program, reason(program, error, argc, argv));
   }
   for (std::size_t i = 0; i < commands.size(); ++i)
     if (commands[i]->parsed()) return actions.at(i)();

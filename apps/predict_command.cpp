@@ -18,6 +18,7 @@
 #include "grainlaw/element/record.hpp"
 #include "grainlaw/model/envelope.hpp"
 #include "grainlaw/model/predict.hpp"
+#include "grainlaw/model/predict_minimal.hpp"
 #include "grainlaw/model/start.hpp"
 #include "grainlaw/model/walk/sensitivities.hpp"
 
@@ -70,9 +71,12 @@ void echo_start(Terminal& terminal, const model::Prediction& prediction) {
   for (const auto& warning : prediction.warnings) terminal.warn("warning: " + warning);
 }
 
+/// The form that is evaluated, not integrated.
+bool is_minimal(const Arguments& arguments) { return arguments.form == model::minimal_name; }
+
 model::PredictOptions read_options(const Arguments& arguments) {
   model::PredictOptions options;
-  const model::Choice choice = model::choice_of(arguments.form);
+  const model::Choice choice = is_minimal(arguments) ? model::Choice{} : model::choice_of(arguments.form);
   options.form = choice.form;
   options.terms = choice.terms;
   options.method = model::method_of(arguments.method);
@@ -143,6 +147,8 @@ void check_arguments(const Arguments& arguments) {
     throw Error("", "--plot", "must not be the table's own file, got " + arguments.plot);
   if (!arguments.envelope.empty() && !arguments.sensitivities.empty())
     throw Error("", "--sensitivities", "goes with the table along a path, not with --envelope");
+  if (is_minimal(arguments) && !(arguments.envelope.empty() && arguments.sensitivities.empty()))
+    throw Error("", "--form", "minimal has no rates: it goes without --envelope and --sensitivities");
 }
 
 /// Strain increments around the end of a path.
@@ -180,14 +186,29 @@ void write_table(const Arguments& arguments, const Record& record) {
     write_envelope_picture(arguments.plot, record);
 }
 
+/// The minimal form, along a path by strain or the rows of a record.
+model::Prediction predict_minimally(const model::ParameterSet& parameters, const Followed& followed,
+                                    const model::PredictOptions& options, bool even_rows) {
+  if (followed.strains || followed.path.by_stress())
+    throw Error("", "--form", "minimal follows a path by strain or the record of one");
+  if (!followed.record || even_rows)
+    return model::predict_minimal(parameters, followed.path, options.rows_per_leg);
+  return model::predict_minimal(parameters, followed.path,
+                                model::samples_of(*followed.record, followed.path, *followed.path.start.nu));
+}
+
 int run(const Arguments& arguments) {
   check_arguments(arguments);
   const auto options = read_options(arguments);
   const auto probe = read_probe(arguments);
   const auto parameters = model::ParameterSet::load(arguments.parameters);
-  const Followed followed = read_followed(arguments.path, arguments.nu, arguments.P);
+  const Followed followed =
+      read_followed(arguments.path, arguments.nu, arguments.P, parameters.material.stress_unit_kPa());
+  const bool even_rows = !arguments.rows.empty();
   const model::Prediction prediction =
-      predict_along(parameters, followed, options, !arguments.rows.empty(), arguments.sensitivities);
+      is_minimal(arguments)
+          ? predict_minimally(parameters, followed, options, even_rows)
+          : predict_along(parameters, followed, options, even_rows, arguments.sensitivities);
   Terminal terminal;
   model::Status status = prediction.status;
   Record record = prediction.record;
@@ -222,8 +243,9 @@ Action add_predict(CLI::App& program) {
   command->add_option("-o,--output", arguments->output, "table to write (default: standard output)")
       ->type_name("FILE.csv");
   command
-      ->add_option("--form", arguments->form,
-                   "reduced_closed, reduced, coupled, memory or coupled_3_14; with terms: coupled+energy")
+      ->add_option(
+          "--form", arguments->form,
+          "reduced_closed, reduced, coupled, memory, coupled_3_14 or minimal; with terms: coupled+energy")
       ->type_name("FORM")
       ->capture_default_str();
   command->add_option("--rtol", arguments->rtol, "relative tolerance of the integration (default: 1e-8)")
@@ -243,8 +265,8 @@ Action add_predict(CLI::App& program) {
       ->delimiter(',');
   command->add_option("--nu", arguments->nu, "volume fraction at the first row of STRAINS.csv")
       ->type_name("NUMBER");
-  command->add_option("--P", arguments->P, "pressure over k* at the first row of STRAINS.csv")
-      ->type_name("NUMBER");
+  command->add_option("--P", arguments->P, "pressure at the first row of STRAINS.csv: over k*, or as 50kPa")
+      ->type_name("NUMBER[kPa]");
   command
       ->add_option("--envelope", arguments->envelope,
                    "in place of the path's table, the responses of its end to strains of this size in all "

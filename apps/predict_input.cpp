@@ -1,11 +1,11 @@
 #include "grainlaw/apps/predict_input.hpp"
 
 #include <cmath>
+#include <string_view>
 
 #include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/dem/scene.hpp"
 #include "grainlaw/element/error.hpp"
-#include "grainlaw/element/path_limits.hpp"
 #include "grainlaw/model/strain_table.hpp"
 
 namespace grainlaw::apps {
@@ -14,10 +14,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Followed read_strains(const fs::path& file, const std::string& nu, const std::string& P) {
+/// Over k*, from a number without a unit or in kPa. Packings of this engine stay below 0.1: a larger number
+/// without a unit is one of kPa.
+double read_pressure(const std::string& text, double unit_kPa) {
+  constexpr std::string_view kPa = "kPa";
+  if (text.ends_with(kPa))
+    return read_number("--P", text.substr(0, text.size() - kPa.size()), between(0, unit_kPa)) / unit_kPa;
+  try {
+    return read_number("--P", text, between(0, 1));
+  } catch (const Error&) {
+    throw Error("", "--P",
+                "must be a number between 0 and 1, over k* = " + to_text(unit_kPa) +
+                    " kPa, or in kPa with that unit, as 50kPa, got " + text);
+  }
+}
+
+Followed read_strains(const fs::path& file, const std::string& nu, const std::string& P, double unit_kPa) {
   std::optional<double> start_nu, start_P;
   if (!nu.empty()) start_nu = read_number("--nu", nu, inside(0, 1));
-  if (!P.empty()) start_P = read_number("--P", P, between(0, largest_stress));
+  if (!P.empty()) start_P = read_pressure(P, unit_kPa);
   const Record table = Record::read_csv(file, {"eps_vol", "eps_dev"});
   auto strains = model::strain_path(table, file.string(), start_nu, start_P);
   return {strains.path, std::nullopt, std::move(strains)};
@@ -25,8 +40,8 @@ Followed read_strains(const fs::path& file, const std::string& nu, const std::st
 
 }  // namespace
 
-Followed read_followed(const fs::path& where, const std::string& nu, const std::string& P) {
-  if (where.extension() == ".csv") return read_strains(where, nu, P);
+Followed read_followed(const fs::path& where, const std::string& nu, const std::string& P, double unit_kPa) {
+  if (where.extension() == ".csv") return read_strains(where, nu, P, unit_kPa);
   for (const auto& [option, value] : {std::pair{"--nu", &nu}, std::pair{"--P", &P}})
     if (!value->empty())
       throw Error("", option, "goes with a table of strains (.csv); a path has its start itself");

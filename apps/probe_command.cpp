@@ -49,13 +49,9 @@ StrainTensor axis_of(const std::string& name) {
   throw Error("", "--axis", "must be d2 (-1, 1, 0), d3 (-1/2, -1/2, 1) or uni (0, 0, 1), got " + name);
 }
 
-const std::vector<std::string> undo_columns{"changed_by_volume", "changed_by_shear", "left_by_volume",
-                                            "left_by_shear",     "B_left",           "A1_left",
-                                            "A2_left",           "G_oct_left"};
-
 std::vector<std::string> columns(const Plan& plan) {
   std::vector<std::string> list = moduli_columns();
-  if (plan.undo) list.insert(list.end(), undo_columns.begin(), undo_columns.end());
+  if (plan.undo) list.insert(list.end(), undo_columns().begin(), undo_columns().end());
   const std::vector<std::string> also = plan.also.names();
   list.insert(list.end(), also.begin(), also.end());
   return list;
@@ -96,8 +92,8 @@ class Rows {
   std::vector<double> of_response() {
     const dem::LinearResponse response = packing_.response();
     std::vector<double> row = packing_.row(response);
-    if (plan_.undo) row.insert(row.end(), undo_columns.size(), nothing);
-    const std::vector<double> also = plan_.also.values(packing_.packing(), response, material_);
+    if (plan_.undo) row.insert(row.end(), undo_columns().size(), nothing);
+    const std::vector<double> also = plan_.also.values(packing_.packing(), response, material_, plan_.axis);
     row.insert(row.end(), also.begin(), also.end());
     return row;
   }
@@ -188,7 +184,8 @@ int run(const Arguments& arguments) {
       unbalanced += found == Found::no_balance ? 1 : 0;
     }
   record.write_csv(arguments.output);
-  terminal.say(fmt::format("wrote {}: moduli of {} packings", arguments.output, probed));
+  terminal.say(
+      fmt::format("wrote {}: moduli of {} packing{}", arguments.output, probed, probed == 1 ? "" : "s"));
   return probed > 0 && unbalanced == 0 ? all_well : failed;
 }
 
@@ -214,7 +211,8 @@ Action add_probe(CLI::App& program) {
   command->add_flag("--undo", arguments->undo, "take each strain back, too, and say what is left of it");
   command
       ->add_option("--also", arguments->also,
-                   "more columns: eigenvalues, symmetry, young, waves, floppy; separated by commas")
+                   "more columns: eigenvalues, symmetry, young, waves, floppy, invariants, affine, stress; "
+                   "separated by commas")
       ->type_name("NAMES")
       ->delimiter(',')
       ->allow_extra_args(false);

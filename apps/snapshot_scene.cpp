@@ -9,6 +9,8 @@ namespace fs = std::filesystem;
 
 fs::path scene_file_of(const std::string& snapshots, const std::string& given) {
   if (!fs::exists(snapshots)) throw Error(snapshots, "", "no such file");
+  if (fs::is_directory(snapshots))
+    throw Error(snapshots, "", "is a directory; the snapshots of a record are its snapshots.h5");
   if (!given.empty()) return given;
   const fs::path beside = fs::path(snapshots).parent_path() / "scene.json";
   if (!fs::exists(beside))

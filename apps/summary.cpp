@@ -70,7 +70,7 @@ void add_memory_rows(const model::ParameterSet& set, const Add& add) {
   add("memory.eps0_R", m.eps0_R);
   if (m.phi_cr) add("memory.phi_cr", *m.phi_cr);
   if (m.eps_c) add("memory.eps_c", *m.eps_c);
-  if (m.eps_r) add("memory.eps_r", *m.eps_r);
+  if (m.hold) add("memory.hold", *m.hold);
 }
 
 /// The fitted parameters with their names, in the order they are shown.

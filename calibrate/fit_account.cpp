@@ -321,7 +321,7 @@ Json Account::to_json() const {
   for (const LeftOut& left : left_out) {
     json["left_out"].push_back({{"test", left.name}, {"role", name_of(left.role)}, {"reason", left.reason}});
   }
-  if (memory) json["memory"] = memory_json(*memory, shear_jammings);
+  if (memory) json["memory"] = memory_json(*this);
   return json;
 }
 

@@ -14,6 +14,8 @@
 #include "grainlaw/calibrate/fit_parameters.hpp"
 #include "grainlaw/calibrate/fit_selection.hpp"
 #include "grainlaw/calibrate/fit_volumetric.hpp"
+#include "grainlaw/calibrate/memory_relaxed.hpp"
+#include "grainlaw/calibrate/memory_tapping.hpp"
 
 namespace grainlaw::calibrate {
 
@@ -25,13 +27,17 @@ struct Account {
   double narrow_P_min = 0;
   /// Eq. 2.20 through the tests of role fit, by mode: d2 always, d3 where there are such tests.
   std::map<std::string, std::map<ShearQuantity, FitResult>> density;
-  std::map<std::string, std::map<ShearQuantity, std::vector<RunValue>>> run_values;  ///< what it was fitted to
-  double nu_c = 0;                                            ///< of Eq. 2.20: that of the isotropic pressure
+  std::map<std::string, std::map<ShearQuantity, std::vector<RunValue>>>
+      run_values;   ///< what it was fitted to
+  double nu_c = 0;  ///< of Eq. 2.20: that of the isotropic pressure
   bool nu_c_fitted = false;
   std::optional<ModuliFit> moduli;           ///< none where no test has a table of moduli
   bool moduli_nu_c_fitted = false;           ///< the nu_c that its B counts from is that of the d2 tests
   std::vector<CycleDensity> cycles;          ///< of the tests of role memory
   std::vector<ShearJamming> shear_jammings;  ///< likewise
+  std::vector<RelaxedState> relaxed;         ///< likewise
+  RelaxedLimit relaxed_limit;                ///< of these
+  std::vector<TappedDensity> tapped;         ///< likewise
   std::optional<MemoryFit> memory;           ///< none where no test has that role
 
   std::optional<VolumetricFit> volumetric;  ///< none where no sheared packing changed its volume alone

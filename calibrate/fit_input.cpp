@@ -49,12 +49,29 @@ void check_row_count(const Json& scene, const Path& path, const Record& rows, co
                     std::to_string(rows.rows()) + ": it is cut short or of another scene");
 }
 
+/// One row by linear response for each state that the scene asks for; a table of strains alone is of another
+/// kind, and so is one that the scene does not ask for.
+void check_moduli_count(const Json& scene, const std::optional<Record>& moduli, const fs::path& file) {
+  const Json measure = scene.value("measure", Json::object());
+  if (!measure.contains("moduli") || measure["moduli"].empty()) return;
+  const std::size_t states = measure["moduli"].size();
+  if (!moduli) throw Error(file.string(), "", "no such file, and the scene asks for moduli");
+  const std::vector<double>& amplitude = (*moduli)["amplitude"];
+  const auto rows = static_cast<std::size_t>(std::count(amplitude.begin(), amplitude.end(), 0.0));
+  if (rows != states && (rows > 0 || amplitude.empty()))
+    throw Error(file.string(), "",
+                "must have " + std::to_string(states) + " states as its scene says, got " +
+                    std::to_string(rows) + ": it is cut short or of another scene");
+}
+
 /// Rows must say where on the path they belong.
-std::optional<Record> kept_moduli(const fs::path& file) {
-  if (!fs::exists(file)) return std::nullopt;
-  Record moduli = read_moduli(file);
+std::optional<Record> kept_moduli(const Json& scene, const fs::path& file) {
+  std::optional<Record> moduli;
+  if (fs::exists(file)) moduli = read_moduli(file);
+  check_moduli_count(scene, moduli, file);
+  if (!moduli) return moduli;
   for (const char* column : {"segment", "eps_dev", "backbone", "contacts"})
-    if (!moduli.has(column)) throw Error(file.string(), column, "column is missing");
+    if (!moduli->has(column)) throw Error(file.string(), column, "column is missing");
   return moduli;
 }
 
@@ -95,7 +112,7 @@ TestRecord read_record(const fs::path& dir, Role role) {
   test.sheared_along = shear_axis_before(json, dir);
   test.rows = Record::read_csv(table, needed_columns);
   check_row_count(json, test.path, test.rows, table);
-  test.moduli = kept_moduli(dir / "moduli.csv");
+  test.moduli = kept_moduli(json, dir / "moduli.csv");
   for (const char* column : {"segment", "eps_vol", "eps_dev", "nu", "P"}) {
     for (const double value : test.rows[column]) {
       if (std::isnan(value))

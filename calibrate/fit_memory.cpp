@@ -19,6 +19,7 @@ constexpr double nu_resolution = 5e-4;
 /// the lowest by this share.
 constexpr double off_phi_SJ = 1e-4;
 constexpr int starts = 24;
+constexpr double most_loose = 0.1;
 constexpr std::size_t fewest_cycles = 3;  // of a record that says how it grows
 
 /// Share of the limit after M cycles: 0 for M = 0, where a power of M has no derivative.
@@ -58,10 +59,21 @@ struct ReversalLaw {  // phi_SJ, alpha, eps0_R, phi_cr
   }
 };
 
+/// Whether too many cycles to this volume fraction leave a packing that does not jam there.
+bool often_loose(const std::vector<CycleDensity>& cycles, double phi_max) {
+  double all = 0, loose = 0;
+  for (const CycleDensity& c : cycles) {
+    if (std::abs(c.phi_max - phi_max) > nu_resolution) continue;
+    all += 1;
+    loose += c.from_P.known() ? 0 : 1;
+  }
+  return loose > most_loose * all;
+}
+
 std::vector<FitSeries> series_of(const std::vector<CycleDensity>& cycles) {
   std::vector<FitSeries> series;
   for (const CycleDensity& c : cycles) {
-    if (!c.from_P.known()) continue;
+    if (!c.from_P.known() || often_loose(cycles, c.phi_max)) continue;
     if (series.empty() || series.back().test != c.test) series.push_back({c.test, c.group, {}});
     series.back().points.push_back({c.phi_max, c.from_P.value, c.M, 0});
   }
@@ -103,13 +115,14 @@ FitParameter held_parameter(const std::string& name, const KnownValue& at) {
 
 bool is_found(const FitEstimate& e) { return e.determined && !e.held && e.stderr_.value_or(0) > 0; }
 
-/// Weighted mean where both found it, so that one number serves all laws.
-LimitDensity common_limit(const FitEstimate& compressed, const FitEstimate& sheared) {
-  LimitDensity out{compressed.value, compressed.stderr_.value_or(0), {}, {}};
+/// Weighted mean of those that found it, so that one number serves all laws.
+LimitDensity common_limit(const FitEstimate& compressed, const FitEstimate& sheared,
+                          const Estimate& at_rest) {
+  LimitDensity out{compressed.value, compressed.stderr_.value_or(0), {}, {}, at_rest};
   double weights = 0, sum = 0;
   if (is_found(compressed)) out.by_over_compression = {compressed.value, *compressed.stderr_};
   if (is_found(sheared)) out.by_shear = {sheared.value, *sheared.stderr_};
-  for (const Estimate& e : {out.by_over_compression, out.by_shear}) {
+  for (const Estimate& e : {out.by_over_compression, out.by_shear, out.by_rest}) {
     if (!e.known()) continue;
     weights += 1 / (e.error * e.error);
     sum += e.value / (e.error * e.error);
@@ -258,7 +271,7 @@ FitProblem reversal_problem(const std::vector<ShearJamming>& runs, const KnownVa
 }
 
 MemoryFit fit_memory(const std::vector<CycleDensity>& cycles, const std::vector<ShearJamming>& runs,
-                     const KnownValues& known) {
+                     const KnownValues& known, const Estimate& at_rest) {
   MemoryFit out;
   out.over_compression_law = over_compression_problem(cycles, Growth::stretched, known);
   out.over_compression = fit(out.over_compression_law);
@@ -267,8 +280,8 @@ MemoryFit fit_memory(const std::vector<CycleDensity>& cycles, const std::vector<
   out.shear_law = shear_jamming_problem(runs, {compressed.value, compressed.stderr_.value_or(0)}, known);
   out.shear = fit(out.shear_law);
   const FitEstimate sheared = out.shear["phi_SJ_sheared"];
-  out.phi_SJ = common_limit(compressed, sheared);
-  if (is_found(sheared)) {  // else the fits stand at one phi_SJ already
+  out.phi_SJ = common_limit(compressed, sheared, at_rest);
+  if (is_found(sheared) || at_rest.known()) {  // else the fits stand at one phi_SJ already
     hold_limit(out.over_compression_law, out.phi_SJ);
     hold_limit(out.shear_law, out.phi_SJ);
     out.over_compression = fit(out.over_compression_law);

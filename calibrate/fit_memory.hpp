@@ -27,7 +27,8 @@ double grown(Growth growth, double M, double mu, double beta);
 
 /// phi_J = phi_SJ + alpha_max (phi_max/phi_SJ - 1)^alpha_phi {1 - exp[-(M/mu)^beta]} (Eqs. 5.1, 5.5; another
 /// growth in place of the braces) over phi_max, with M as the known. Parameters phi_SJ, alpha_max, alpha_phi,
-/// mu, beta. One series per record, cycle after cycle; cycles without a phi_J are left out. phi_SJ stays
+/// mu, beta. One series per record, cycle after cycle; cycles without a phi_J are left out, and with
+/// them all of an amplitude where they are more than a tenth: those that jam are no fair sample. phi_SJ stays
 /// below every phi_max and phi_J of the data, where the slope by it is finite.
 FitProblem over_compression_problem(const std::vector<CycleDensity>& cycles, Growth growth,
                                     const KnownValues& known);
@@ -65,15 +66,15 @@ FitProblem shear_jamming_problem(const std::vector<ShearJamming>& runs, const Kn
 FitProblem reversal_problem(const std::vector<ShearJamming>& runs, const KnownValue& phi_SJ,
                             const KnownValue& alpha, const KnownValues& known);
 
-/// phi_SJ: one number for all laws, the weighted mean of what over-compression and shear say of it, each by
-/// itself; that of the thesis where neither does.
+/// phi_SJ: one number for all laws, the weighted mean of what over-compression, the strains that jam and
+/// relaxed steady states say of it, each by itself; that of the thesis where none does.
 struct LimitDensity {
   double value = 0, error = 0;
-  Estimate by_over_compression, by_shear;  ///< unknown where not determined
-  bool found() const { return by_over_compression.known() || by_shear.known(); }
+  Estimate by_over_compression, by_shear, by_rest;  ///< unknown where not determined
+  bool found() const { return by_over_compression.known() || by_shear.known() || by_rest.known(); }
 };
 
-/// Group memory. Where shear tells phi_SJ, the fits stand at the common one, held with its error.
+/// Group memory. Where shear or rest tells phi_SJ, the fits stand at the common one, held with its error.
 struct MemoryFit {
   LimitDensity phi_SJ;
   FitResult over_compression, shear, reversal;
@@ -82,8 +83,9 @@ struct MemoryFit {
   std::vector<Entanglement> entangled;  ///< of over_compression with phi_SJ free
 };
 
-/// All of them; never throws for want of data, see FitEstimate::determined.
+/// All of them; never throws for want of data, see FitEstimate::determined. `at_rest` is phi_SJ of relaxed
+/// steady states (memory_relaxed.hpp), unknown where there are none.
 MemoryFit fit_memory(const std::vector<CycleDensity>& cycles, const std::vector<ShearJamming>& runs,
-                     const KnownValues& known);
+                     const KnownValues& known, const Estimate& at_rest = {});
 
 }  // namespace grainlaw::calibrate

@@ -29,7 +29,7 @@ bool complete(const KnownValues& laws) {
 void read_cycles(Account& account, const RecordFolder& folder, const KnownValues& laws,
                  const Selection& selection) {
   for (const TestRecord& test : folder.tests) {
-    if (test.role != Role::memory || test.mode != "iso") continue;
+    if (test.role != Role::memory || test.mode != "iso" || test.sheared_along) continue;
     const auto cycles = cycle_densities(test, laws, selection);
     const auto open =
         std::count_if(cycles.begin(), cycles.end(), [](const CycleDensity& c) { return !c.from_P.known(); });
@@ -58,10 +58,55 @@ bool only_relaxes(const TestRecord& test) {
                      [](const Leg& leg) { return leg.mode == Mode::relax; });
 }
 
+const TestRecord* find(const RecordFolder& folder, const std::string& name) {
+  const auto found = std::find_if(folder.tests.begin(), folder.tests.end(),
+                                  [&](const TestRecord& test) { return test.name == name; });
+  return found != folder.tests.end() ? &*found : nullptr;
+}
+
+/// The largest volume fraction of the records that this one starts from; 0 where none is there.
+double largest_before(const RecordFolder& folder, const TestRecord& test) {
+  const TestRecord* from = test.from ? find(folder, test.from->record) : nullptr;
+  return from != nullptr ? std::max(largest_nu(*from, test.from->leg), largest_before(folder, *from)) : 0;
+}
+
+bool is_tapped(const TestRecord& test) {
+  return test.role == Role::memory && test.mode == "iso" && test.sheared_along && test.from;
+}
+
+void read_tapped(Account& account, const RecordFolder& folder, const KnownValues& laws,
+                 const Selection& selection) {
+  for (const TestRecord& test : folder.tests) {
+    if (!is_tapped(test)) continue;
+    const TestRecord* sheared = find(folder, test.from->record);
+    if (sheared == nullptr || sheared->mode != "d2") {
+      account.left_out.push_back({test.name, test.role, "memory: it does not start from a d2 test"});
+      continue;
+    }
+    for (TappedDensity& one : tapped_density(test, *sheared, laws, selection)) {
+      one.phi_max = largest_before(folder, *sheared);
+      account.tapped.push_back(std::move(one));
+    }
+  }
+}
+
+/// A shear at one volume fraction from which unloadings of this folder start.
+bool taps(const RecordFolder& folder, const TestRecord& test) {
+  return std::any_of(folder.tests.begin(), folder.tests.end(), [&](const TestRecord& other) {
+    return is_tapped(other) && other.from->record == test.name;
+  });
+}
+
 void read_shear(Account& account, const RecordFolder& folder, const Selection& selection) {
   for (const TestRecord& test : folder.tests) {
     if (test.role != Role::memory || test.mode == "iso" || only_relaxes(test)) continue;
+    if (test.mode == "d2" && taps(folder, test)) continue;
     const auto from = origin_of(account, test);
+    if (test.mode == "d2" && from && from->from_P.known() && rests_along_shear(test)) {
+      const auto states = relaxed_states(test, *from);
+      account.relaxed.insert(account.relaxed.end(), states.begin(), states.end());
+      continue;
+    }
     if (test.mode == "d2" && from && from->from_P.known()) {
       const auto runs = shear_jammings(test, *from, selection);
       account.shear_jammings.insert(account.shear_jammings.end(), runs.begin(), runs.end());
@@ -158,6 +203,40 @@ Json agreement(const std::vector<ShearJamming>& runs, JamSign sign) {
           {"deviation", n > 1 ? Json(std::sqrt(square / (n - 1))) : Json(nullptr)}};
 }
 
+Json estimate_json(const Estimate& e) {
+  return {{"value", number_or_null(e.value)}, {"stderr", number_or_null(e.error)}};
+}
+
+Json relaxed_json(const Account& account) {
+  Json out{{"steady_states", account.relaxed_limit.states},
+           {"pressure", estimate_json(account.relaxed_limit.by_pressure)},
+           {"shear_stress", estimate_json(account.relaxed_limit.by_shear_stress)}};
+  for (const char* key : {"phi_J0", "nu", "eps_dev", "P_flow", "P", "s_dev", "C"}) out[key] = Json::array();
+  for (const RelaxedState& s : account.relaxed) {
+    out["phi_J0"].push_back(s.phi_J0.value);
+    out["nu"].push_back(s.nu);
+    out["eps_dev"].push_back(s.eps_dev);
+    out["P_flow"].push_back(s.P_flow);
+    out["P"].push_back(s.P);
+    out["s_dev"].push_back(number_or_null(s.s_dev));
+    out["C"].push_back(s.C);
+  }
+  return out;
+}
+
+Json tapped_json(const std::vector<TappedDensity>& packings) {
+  Json out;
+  for (const char* key : {"phi_max", "nu", "amplitude", "strain", "phi_J"}) out[key] = Json::array();
+  for (const TappedDensity& t : packings) {
+    out["phi_max"].push_back(t.phi_max);
+    out["nu"].push_back(t.density.phi_max);
+    out["amplitude"].push_back(t.amplitude);
+    out["strain"].push_back(t.strain);
+    out["phi_J"].push_back(number_or_null(t.density.from_P.value));
+  }
+  return out;
+}
+
 }  // namespace
 
 void fit_memory_of(Account& account, const RecordFolder& folder, const Reference& reference,
@@ -171,8 +250,11 @@ void fit_memory_of(Account& account, const RecordFolder& folder, const Reference
     return;
   }
   read_cycles(account, folder, laws, selection);
+  read_tapped(account, folder, laws, selection);
   read_shear(account, folder, selection);
-  account.memory = fit_memory(account.cycles, account.shear_jammings, reference.memory_values());
+  account.relaxed_limit = relaxed_limit(account.relaxed, selection);
+  account.memory = fit_memory(account.cycles, account.shear_jammings, reference.memory_values(),
+                              account.relaxed_limit.by_pressure);
   for (FitEntry entry :
        {over_compression_entry(*account.memory, account, selection), shear_entry(*account.memory, selection),
         reversal_entry(*account.memory, selection)}) {
@@ -184,7 +266,8 @@ void fit_memory_of(Account& account, const RecordFolder& folder, const Reference
   }
 }
 
-Json memory_json(const MemoryFit& fit, const std::vector<ShearJamming>& runs) {
+Json memory_json(const Account& account) {
+  const MemoryFit& fit = *account.memory;
   Json growth = Json::array(), entangled = Json::array();
   for (const GrowthComparison& g : fit.growth)
     growth.push_back({{"law", name_of(g.growth)},
@@ -195,17 +278,19 @@ Json memory_json(const MemoryFit& fit, const std::vector<ShearJamming>& runs) {
   for (const Entanglement& e : fit.entangled)
     entangled.push_back(
         {{"parameters", {e.first, e.second}}, {"correlation", number_or_null(e.correlation)}});
-  const auto pair = [](const Estimate& e) {
-    return Json{{"value", number_or_null(e.value)}, {"stderr", number_or_null(e.error)}};
-  };
   return {{"phi_SJ",
-           {{"over_compression", pair(fit.phi_SJ.by_over_compression)},
-            {"shear", pair(fit.phi_SJ.by_shear)},
+           {{"over_compression", estimate_json(fit.phi_SJ.by_over_compression)},
+            {"shear", estimate_json(fit.phi_SJ.by_shear)},
+            {"rest", estimate_json(fit.phi_SJ.by_rest)},
             {"value", number_or_null(fit.phi_SJ.value)},
             {"stderr", number_or_null(fit.phi_SJ.error)}}},
+          {"relaxed", relaxed_json(account)},
+          {"tapped", tapped_json(account.tapped)},
           {"growth", growth},
           {"entangled", entangled},
-          {"agreement", {agreement(runs, JamSign::percolation), agreement(runs, JamSign::pressure)}}};
+          {"agreement",
+           {agreement(account.shear_jammings, JamSign::percolation),
+            agreement(account.shear_jammings, JamSign::pressure)}}};
 }
 
 }  // namespace grainlaw::calibrate

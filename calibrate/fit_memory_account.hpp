@@ -8,13 +8,15 @@
 namespace grainlaw::calibrate {
 
 /// Fits group memory to the tests of role memory: cycles of iso, and d2 from a state on the unloading of one
-/// of these; nothing where no test has that role. Others of that role are listed as left out. Needs
+/// of these; nothing where no test has that role. Relaxed states along d2 tell phi_SJ, too; unloadings of
+/// tapped packings are measured, and enter no parameter. Others of that role are listed as left out. Needs
 /// account.packing of iso, at whose laws branches are extrapolated.
 void fit_memory_of(Account& account, const RecordFolder& folder, const Reference& reference,
                    const Selection& selection);
 
-/// What stands under `memory` in fits.json: the growth laws compared, which parameters are entangled, and how
-/// far the signs of jamming agree.
-Json memory_json(const MemoryFit& fit, const std::vector<ShearJamming>& runs);
+/// What stands under `memory` in fits.json: the growth laws compared, which parameters are entangled, how far
+/// the signs of jamming agree, the relaxed states with the phi_SJ of the steady ones, and the tapped
+/// packings. account.memory must be there.
+Json memory_json(const Account& account);
 
 }  // namespace grainlaw::calibrate

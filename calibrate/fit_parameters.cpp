@@ -224,7 +224,7 @@ std::optional<MemoryLaws> Reference::memory() const {
   MemoryLaws memory = *set_->memory;
   if (!same_material_) {
     mark_as_other_material(memory, memory_keys, whose());
-    for (auto* option : {&memory.phi_cr, &memory.eps_c, &memory.eps_r})
+    for (auto* option : {&memory.phi_cr, &memory.eps_c, &memory.hold})
       if (*option) (*option)->source = "assumed";
   }
   return memory;
@@ -279,7 +279,11 @@ std::optional<MemoryLaws> memory_laws(const MemoryFit& fit, const Reference& ref
     law.phi_SJ.value = fit.phi_SJ.value;
     law.phi_SJ.stderr_ = fit.phi_SJ.error;
     law.phi_SJ.source = "fit";
-    law.phi_SJ.note = fit.phi_SJ.by_shear.known() ? "with that of the strains that jam by shear" : "";
+    std::string with;
+    if (fit.phi_SJ.by_shear.known()) with = "with that of the strains that jam by shear";
+    if (fit.phi_SJ.by_rest.known())
+      with += (with.empty() ? "with" : " and") + std::string(" that of relaxed steady states");
+    law.phi_SJ.note = with;
   }
   const FitEstimate& phi_cr = fit.reversal["phi_cr"];
   if (fit.reversal.ran && phi_cr.determined) law.phi_cr = from_estimate(phi_cr, thesis, reference, "");

@@ -2,7 +2,7 @@
 
 #include "grainlaw/calibrate/fit_account.hpp"
 #include "grainlaw/calibrate/fit_checks.hpp"
-#include "grainlaw/calibrate/fit_memory_strains.hpp"
+#include "grainlaw/calibrate/fit_memory_numbers.hpp"
 #include "grainlaw/calibrate/fit_parameters.hpp"
 #include "grainlaw/calibrate/memory_tables.hpp"
 #include "grainlaw/element/error.hpp"
@@ -83,6 +83,8 @@ void FitOutput::write_account(const std::filesystem::path& dir) const {
   write_file(dir / "fits.json", fits.dump(2) + "\n");
   if (over_compression) over_compression->write_csv(dir / "over_compression.csv");
   if (shear_jamming) shear_jamming->write_csv(dir / "shear_jamming.csv");
+  if (relaxed) relaxed->write_csv(dir / "relaxed.csv");
+  if (tapped) tapped->write_csv(dir / "tapped.csv");
 }
 
 FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::path& thesis,
@@ -107,8 +109,10 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
   out.parameters.memory = account.memory ? memory_laws(*account.memory, reference) : reference.memory();
   if (!account.cycles.empty()) out.over_compression = over_compression_table(account.cycles);
   if (!account.shear_jammings.empty()) out.shear_jamming = shear_jamming_table(account.shear_jammings);
+  if (!account.relaxed.empty()) out.relaxed = relaxed_table(account.relaxed);
+  if (!account.tapped.empty()) out.tapped = tapped_table(account.tapped);
   out.parameters.closure = {"iso", out.parameters.isotropic.contains("d2") ? "d2" : "iso", false};
-  add_memory_strains(dir, folder, out.parameters);
+  add_memory_numbers(dir, folder, out.parameters);
   out.fits = account.to_json();
   out.fits["checks"] = physics_checks(account);
   return out;

@@ -15,9 +15,9 @@ namespace grainlaw::calibrate {
 struct FitOutput {
   model::ParameterSet parameters;
   Json fits;  ///< fits.json, see docs/fits.md
-  /// over_compression.csv and shear_jamming.csv (memory_tables.hpp); none where no test of role memory has
-  /// any.
-  std::optional<Record> over_compression, shear_jamming;
+  /// over_compression.csv, shear_jamming.csv, relaxed.csv, tapped.csv (memory_tables.hpp); none where no test
+  /// of role memory has any.
+  std::optional<Record> over_compression, shear_jamming, relaxed, tapped;
 
   /// Writes fits.json and these tables into a directory.
   void write_account(const std::filesystem::path& dir) const;

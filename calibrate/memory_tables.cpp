@@ -35,6 +35,23 @@ const std::vector<std::string> shear_columns{"seed",
                                              "percolating",
                                              "longest"};
 
+const std::vector<std::string> relaxed_columns{"seed", "phi_max", "M",          "phi_J0", "phi_J0_error",
+                                               "nu",   "eps_dev", "P_flow",     "P",      "s_dev",
+                                               "C",    "C_star",  "percolating"};
+const std::vector<std::string> tapped_columns{"seed",
+                                              "phi_max",
+                                              "nu",
+                                              "amplitude",
+                                              "strain",
+                                              "phi_J",
+                                              "phi_J_error",
+                                              "phi_J_contacts",
+                                              "phi_J_contacts_error",
+                                              "phi_J_nonrattlers",
+                                              "phi_J_nonrattlers_error",
+                                              "p0",
+                                              "rows"};
+
 /// Seeds are numbers in a campaign; a record of another name has none.
 double seed_number(const std::string& group) {
   char* end = nullptr;
@@ -81,6 +98,25 @@ Record shear_jamming_table(const std::vector<ShearJamming>& runs) {
   return table;
 }
 
+Record relaxed_table(const std::vector<RelaxedState>& states) {
+  Record table(relaxed_columns);
+  for (const RelaxedState& s : states)
+    table.append(rounded({seed_number(s.group), s.phi_max, s.M, s.phi_J0.value, s.phi_J0.error, s.nu,
+                          s.eps_dev, s.P_flow, s.P, s.s_dev, s.C, s.C_star, s.percolating}));
+  return table;
+}
+
+Record tapped_table(const std::vector<TappedDensity>& packings) {
+  Record table(tapped_columns);
+  for (const TappedDensity& t : packings) {
+    const CycleDensity& c = t.density;
+    table.append(rounded({seed_number(c.group), t.phi_max, c.phi_max, t.amplitude, t.strain, c.from_P.value,
+                          c.from_P.error, c.from_C_star.value, c.from_C_star.error, c.from_f_NR.value,
+                          c.from_f_NR.error, c.p0, static_cast<double>(c.rows)}));
+  }
+  return table;
+}
+
 std::vector<CycleDensity> read_over_compression(const std::filesystem::path& file) {
   const Record table = Record::read_csv(file, cycle_columns);
   std::vector<CycleDensity> cycles;
@@ -119,6 +155,52 @@ std::vector<ShearJamming> read_shear_jamming(const std::filesystem::path& file) 
     runs.push_back(r);
   }
   return runs;
+}
+
+std::vector<RelaxedState> read_relaxed(const std::filesystem::path& file) {
+  const Record table = Record::read_csv(file, relaxed_columns);
+  std::vector<RelaxedState> states;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    RelaxedState s;
+    s.group = seed_text(file, table["seed"][i]);
+    s.phi_max = table["phi_max"][i];
+    s.M = table["M"][i];
+    s.phi_J0 = {table["phi_J0"][i], table["phi_J0_error"][i]};
+    s.nu = table["nu"][i];
+    s.test = record_of("relaxed-" + to_text(s.phi_max), s.nu, s.group);
+    s.eps_dev = table["eps_dev"][i];
+    s.P_flow = table["P_flow"][i];
+    s.P = table["P"][i];
+    s.s_dev = table["s_dev"][i];
+    s.C = table["C"][i];
+    s.C_star = table["C_star"][i];
+    s.percolating = table["percolating"][i];
+    states.push_back(s);
+  }
+  return states;
+}
+
+std::vector<TappedDensity> read_tapped(const std::filesystem::path& file) {
+  const Record table = Record::read_csv(file, tapped_columns);
+  std::vector<TappedDensity> packings;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    TappedDensity t;
+    CycleDensity& c = t.density;
+    c.group = seed_text(file, table["seed"][i]);
+    c.phi_max = table["nu"][i];
+    c.test = record_of("tapped-" + to_text(table["amplitude"][i]), table["strain"][i], c.group);
+    c.M = 1;
+    c.from_P = {table["phi_J"][i], table["phi_J_error"][i]};
+    c.from_C_star = {table["phi_J_contacts"][i], table["phi_J_contacts_error"][i]};
+    c.from_f_NR = {table["phi_J_nonrattlers"][i], table["phi_J_nonrattlers_error"][i]};
+    c.p0 = table["p0"][i];
+    c.rows = static_cast<std::size_t>(table["rows"][i]);
+    t.phi_max = table["phi_max"][i];
+    t.amplitude = table["amplitude"][i];
+    t.strain = table["strain"][i];
+    packings.push_back(t);
+  }
+  return packings;
 }
 
 }  // namespace grainlaw::calibrate

@@ -34,8 +34,10 @@ ModuliState state_at(const Record& table, std::size_t row) {
   return s;
 }
 
-/// Whether strains of the box in every direction cost energy; true where the table does not say.
+/// Whether strains of the box in every direction cost energy; where the table has no constants, whether
+/// compression does.
 bool resists(const Record& table, std::size_t row) {
+  if (!(table["B"][row] > 0)) return false;
   const auto& names = moduli_columns();
   const auto first = std::find(names.begin(), names.end(), "E_xx_xx");
   Eigen::Matrix<double, 6, 6> stiffness;

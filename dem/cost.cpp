@@ -11,6 +11,7 @@
 
 #include "grainlaw/dem/drive.hpp"
 #include "grainlaw/dem/forces.hpp"
+#include "grainlaw/dem/moduli_cost.hpp"
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/preparation.hpp"
 #include "grainlaw/dem/random.hpp"
@@ -78,6 +79,8 @@ class TrialPacking {
   /// Into flow, with grains that rearrange.
   void shear() { go(Mode::d2, {-0.01, 0.01, 0}, 6e-6); }
 
+  /// Without copies beside it.
+  const State& base() const { return state_; }
   State state() const { return times_ > 1 ? tiled(state_, times_) : state_; }
 
  private:
@@ -121,6 +124,7 @@ struct TrialCost {
   double step = 0, force = 0, row = 0;
   std::vector<double> observers;
   double contacts = 0, pairs = 0, bytes = 0;
+  double moduli = 0;  ///< of a state, not per grain
 };
 
 class Trial {
@@ -176,6 +180,9 @@ class Trial {
     }
   }
 
+  void moduli(const State& base, std::size_t grains) {
+    cost_.moduli = moduli_seconds(material_, base, grains);
+  }
   const TrialCost& cost() const { return cost_; }
 
  private:
@@ -329,7 +336,7 @@ std::vector<TrialCost> try_preparation(TrialPacking& packing, const Material& ma
   return trials;
 }
 
-std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene,
+std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::size_t grains,
                                 const std::vector<StageCost>& stages) {
   double low = 1, high = 0;
   for (const StageCost& cost : stages)
@@ -348,6 +355,7 @@ std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene,
     Trial trial(scene.material, flowing.state(), main_stage(stages, true).stage);
     trial.steps();
     trial.rows(scene.measure.observe);
+    if (!scene.measure.moduli.empty()) trial.moduli(packing.base(), grains);
     trials.push_back(trial.cost());
   }
   return trials;
@@ -370,7 +378,7 @@ double thread_seconds() {
 }
 
 double SceneCost::seconds() const {
-  double sum = row_seconds * static_cast<double>(rows);
+  double sum = row_seconds * static_cast<double>(rows) + moduli_seconds * static_cast<double>(moduli);
   for (const ObserverCost& observer : observers) sum += observer.seconds_per_row * static_cast<double>(rows);
   for (const StageCost& stage : stages) sum += stage.seconds;
   return sum;
@@ -397,7 +405,7 @@ SceneCost cost_of(const Scene& scene) {
   TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
   std::vector<TrialCost> prepared;
   if (own != nullptr) prepared = try_preparation(packing, scene.material, stages);
-  const std::vector<TrialCost> path = try_path(packing, scene, stages);
+  const std::vector<TrialCost> path = try_path(packing, scene, start.count(), stages);
   const double grains = static_cast<double>(start.count());
   SceneCost cost;
   cost.grains = start.count();
@@ -408,6 +416,8 @@ SceneCost cost_of(const Scene& scene) {
   cost.row_seconds = grains * mean_of(path, [](const auto& t) { return t.row; });
   cost.rows = scene.record_rows();
   cost.snapshots = scene.measure.snapshots.size();
+  cost.moduli = scene.measure.moduli.size();
+  for (const TrialCost& trial : path) cost.moduli_seconds = std::max(cost.moduli_seconds, trial.moduli);
   cost.snapshot_bytes = grains * 2 * sizeof(Vec3);
   cost.fields = fields_of(mean_of(path, [](const auto& t) { return t.bytes; }));
   for (StageCost& stage : stages)

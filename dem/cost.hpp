@@ -40,6 +40,8 @@ struct SceneCost {
   double row_seconds = 0;                              ///< of a row: the standard columns
   std::size_t rows = 0, snapshots = 0;
   double snapshot_bytes = 0;  ///< each
+  std::size_t moduli = 0;     ///< states whose moduli are measured
+  double moduli_seconds = 0;  ///< of each: balance and linear response (dem/moduli_cost.hpp)
   std::vector<FieldCost> fields;
   std::vector<StageCost> stages;
   std::vector<ObserverCost> observers;

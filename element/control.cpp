@@ -14,7 +14,7 @@ constexpr double waited_strain = 0.5;  // at the servo's rate: from a gas to a d
 
 }  // namespace
 
-Range target_range() { return above_up_to(0, largest_stress); }
+Range target_range() { return of_k_star(above_up_to(0, largest_stress)); }
 
 StressTarget read_target(Reader& reader, std::string_view key) {
   if (reader.raw(key).is_string()) {

@@ -73,7 +73,8 @@ std::string Range::text() const {
   if (low != -infinity) text += std::string(low_open ? "> " : ">= ") + to_text(low);
   if (high != infinity)
     text += std::string(text.empty() ? "" : " and ") + (high_open ? "< " : "<= ") + to_text(high);
-  return text.empty() ? "a finite number" : text;
+  if (text.empty()) text = "a finite number";
+  return unit.empty() ? text : text + " " + std::string(unit);
 }
 
 Range any_number() { return {-infinity, infinity, true, true}; }

@@ -27,8 +27,9 @@ Json parse_json(std::string_view text, const std::string& file);
 struct Range {
   double low, high;
   bool low_open, high_open;
+  std::string_view unit = {};     ///< said after the numbers
   bool contains(double x) const;  ///< false for NaN and infinities
-  std::string text() const;       ///< ">= 1", "> 0 and < 1"
+  std::string text() const;       ///< ">= 1", "> 0 and < 1", ">= 0 and <= 1 of k*"
 };
 Range any_number();
 Range at_least(double low);

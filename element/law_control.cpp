@@ -21,12 +21,13 @@ Range range_of(Quantity quantity) {
     case Quantity::eps_dev:
       return between(-largest_strain, largest_strain);
     case Quantity::P:
-      return between(0, largest_stress);
+      return of_k_star(between(0, largest_stress));
     case Quantity::sigma_dev:
+      return of_k_star(between(-largest_stress, largest_stress));
     case Quantity::s_dev:
       break;
   }
-  return between(-largest_stress, largest_stress);
+  return between(-largest_ratio, largest_ratio);
 }
 
 }  // namespace
@@ -90,7 +91,7 @@ Stop read_stop(Reader reader) {
     reader.fail("", reader.has("above") ? "redundant: above and below both say where; give one"
                                         : "must give above or below");
   stop.above = reader.has("above");
-  stop.value = reader.number(stop.above ? "above" : "below", between(-largest_stress, largest_stress));
+  stop.value = reader.number(stop.above ? "above" : "below", between(-largest_ratio, largest_ratio));
   reader.finish();
   return stop;
 }

@@ -14,8 +14,20 @@ namespace grainlaw {
 /// the moduli, the 21 constants.
 const std::vector<std::string>& moduli_columns();
 
-/// Reads one. Throws Error (file, column) for a column that is none of these or lacks, and as
-/// Record::read_csv does. A packing that was refused has a row with empty moduli.
+/// Those that `grainlaw probe --undo` adds.
+const std::vector<std::string>& undo_columns();
+
+/// A name of `grainlaw probe --also`, and the columns that it adds.
+struct ElasticGroup {
+  std::string name;
+  std::vector<std::string> columns;
+};
+/// All of them: eigenvalues, symmetry, young, waves, floppy, invariants, affine, stress.
+const std::vector<ElasticGroup>& elastic_groups();
+
+/// Reads one, with or without the columns of --undo and --also. Throws Error (file, column) for a column that
+/// is none of these or lacks, and as Record::read_csv does. A packing that was refused has a row with empty
+/// moduli.
 Record read_moduli(const std::filesystem::path& file);
 
 /// Why the packing of a row has no moduli, from the row itself: no grain bears load, fewer contacts than a

@@ -384,9 +384,9 @@ std::string name_of(Profile profile) {
 Start Start::read(Reader reader) {
   Start start;
   start.nu = reader.maybe_number("nu", inside(0, 1));
-  start.P = reader.maybe_number("P", between(0, largest_stress));
-  start.sigma_dev = reader.maybe_number("sigma_dev", between(-largest_stress, largest_stress));
-  start.F_dev = reader.maybe_number("F_dev", between(-largest_stress, largest_stress));
+  start.P = reader.maybe_number("P", of_k_star(between(0, largest_stress)));
+  start.sigma_dev = reader.maybe_number("sigma_dev", of_k_star(between(-largest_stress, largest_stress)));
+  start.F_dev = reader.maybe_number("F_dev", between(-largest_ratio, largest_ratio));
   start.phi_J = reader.maybe_number("phi_J", inside(0, 1));
   start.phi_max = reader.maybe_number("phi_max", inside(0, 1));
   reader.finish();

@@ -13,15 +13,25 @@ namespace grainlaw {
 
 namespace {
 
+/// Without the blanks around it.
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
 std::vector<std::string_view> split(std::string_view line, char separator) {
   std::vector<std::string_view> parts;
   while (true) {
     const auto at = line.find(separator);
-    parts.push_back(line.substr(0, at));
+    parts.push_back(trimmed(line.substr(0, at)));
     if (at == std::string_view::npos) return parts;
     line.remove_prefix(at + 1);
   }
 }
+
+/// Spreadsheets mark a file as UTF-8 by these bytes at its start.
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 struct ColumnRange {
   std::string_view column;
@@ -61,6 +71,17 @@ double parse_field(std::string_view field, const std::string& file, std::size_t 
                 "line " + std::to_string(line) + ": must be a finite number or empty, got \"" +
                     std::string(field.substr(0, 40)) + "\"");
   return value;
+}
+
+/// A spreadsheet of another country parts columns otherwise, and has a comma in its numbers.
+void check_separator(std::string_view header, const std::string& file) {
+  for (const auto& [separator, name] : {std::pair{';', "semicolons"}, std::pair{'\t', "tabs"}})
+    if (header.find(separator) != std::string_view::npos && header.find(',') == std::string_view::npos)
+      throw Error(
+          file, "",
+          std::string("line 1: columns must be separated by commas (and numbers have a decimal point), "
+                      "got ") +
+              name);
 }
 
 void check_header(const Record& record, const std::string& file, const std::vector<std::string>& required) {
@@ -122,6 +143,7 @@ Record Record::read_csv(const std::filesystem::path& path, const std::vector<std
   const std::string file = path.string();
   const std::string text = read_file(path);
   std::string_view rest = text;
+  if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
   std::size_t line = 0;
   const auto next = [&](std::string_view& out) {
     if (rest.empty()) return false;
@@ -138,6 +160,7 @@ Record Record::read_csv(const std::filesystem::path& path, const std::vector<std
         "is cut short: its last line does not end with a newline");  // half a number reads as a whole one
   std::string_view current;
   if (!next(current)) throw Error(file, "", "is empty; a record starts with a header line");
+  check_separator(current, file);
   std::vector<std::string> names;
   for (const auto name : split(current, ',')) names.emplace_back(name);
   Record record(std::move(names));

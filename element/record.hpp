@@ -30,7 +30,7 @@ class Record {
 
   /// Reads a CSV file. Throws Error (file, line, column) for nan, inf, text, a short or long line, a repeated
   /// or missing column, a value that none can have (nu outside (0, 1)), an empty file. `required` lists
-  /// columns that must be there.
+  /// columns that must be there. Blanks around a field, line ends of DOS and a byte order mark do not matter.
   static Record read_csv(const std::filesystem::path& file, const std::vector<std::string>& required = {});
   /// Writes aside, then renames; throws Error when the disk is full. Infinite values are refused.
   void write_csv(const std::filesystem::path& file) const;

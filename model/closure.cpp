@@ -131,14 +131,11 @@ void add_memory(BasicLaws<P>& laws, const ParameterSet& parameters, const std::s
   laws.shear_pressure = pressure_of(parameters.packing(parameters.closure.contacts, who), read);
   const MemoryLaws& memory = parameters.need_memory(who);
   laws.memory.over = over_compression_of(memory, read);
-  const auto needed = [&](const std::optional<Parameter>& parameter, const char* key) {
-    if (!parameter)
-      throw Error(parameters.file, std::string("memory.") + key,
-                  "is missing; " + who + " needs it (fit and calibrate write it)");
-    return read(*parameter);
-  };
-  laws.memory.eps_c = needed(memory.eps_c, "eps_c");
-  laws.memory.eps_r = needed(memory.eps_r, "eps_r");
+  if (!memory.eps_c)
+    throw Error(parameters.file, "memory.eps_c",
+                "is missing; " + who + " needs it (fit and calibrate write it)");
+  laws.memory.eps_c = read(*memory.eps_c);
+  if (memory.hold) laws.memory.hold = read(*memory.hold);
 }
 
 /// Fills in what the terms need.

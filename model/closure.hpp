@@ -47,8 +47,8 @@ Choice choice_of(const std::string& name);
 template <class P>
 struct BasicMemoryNumbers {
   BasicOverCompression<P> over;  ///< Eqs. 5.1, 5.5
-  P eps_c = 1;                   ///< strain in which aligned shear takes 1 - 1/e of phi_J - phi_s
-  P eps_r = 1;                   ///< the same of giving it back while the fabric is opposed
+  P eps_c = 1;                   ///< strain by which the memory of shear is later than the fabric
+  P hold = 0;                    ///< part of the fabric's rate that steady shear takes
 };
 
 /// The laws of one form, as numbers.

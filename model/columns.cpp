@@ -32,12 +32,15 @@ double column_value(std::string_view column, const Law& law, const State& state)
   return value_of(column, state, contacts_of(law, state));
 }
 
-std::vector<double> row_of(const Law& law, const State& state, std::size_t segment) {
-  const Contacts contacts = contacts_of(law, state);
+std::vector<double> row_of(const Contacts& contacts, const State& state, std::size_t segment) {
   std::vector<double> row;
   for (const auto& column : prediction_columns())
     row.push_back(column == "segment" ? static_cast<double>(segment) : value_of(column, state, contacts));
   return row;
+}
+
+std::vector<double> row_of(const Law& law, const State& state, std::size_t segment) {
+  return row_of(contacts_of(law, state), state, segment);
 }
 
 }  // namespace grainlaw::model

@@ -14,6 +14,7 @@ namespace grainlaw::model {
 double column_value(std::string_view column, const Law& law, const State& state);
 
 /// A row of prediction_columns().
+std::vector<double> row_of(const Contacts& contacts, const State& state, std::size_t segment);
 std::vector<double> row_of(const Law& law, const State& state, std::size_t segment);
 
 }  // namespace grainlaw::model

@@ -147,7 +147,7 @@ struct MemoryOption {
 };
 const MemoryOption memory_options[] = {{"phi_cr", &MemoryLaws::phi_cr, inside(0, 1)},
                                        {"eps_c", &MemoryLaws::eps_c, above(0)},
-                                       {"eps_r", &MemoryLaws::eps_r, above(0)}};
+                                       {"hold", &MemoryLaws::hold, inside(0, 1)}};
 
 Json shear_json(const ShearLaws& shear) {
   Json json = Json::object();

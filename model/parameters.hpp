@@ -71,8 +71,8 @@ struct VolumetricLaws {
 /// memory: Eqs. 5.1 to 5.13.
 struct MemoryLaws {
   Parameter phi_SJ, mu, beta, alpha_max, alpha_phi, alpha, eps0, eps0_R;
-  std::optional<Parameter> phi_cr;        ///< the thesis gives no number
-  std::optional<Parameter> eps_c, eps_r;  ///< strains of the form with memory, which is not the thesis's
+  std::optional<Parameter> phi_cr;       ///< the thesis gives no number
+  std::optional<Parameter> eps_c, hold;  ///< of the form with memory, which is not the thesis's
   OverCompression over_compression() const;
 };
 

@@ -123,6 +123,9 @@ void Filling<T>::fill_phi_J() {
         });
     take_history(jamming_density_after(memory, given_("phi_max", *start_.phi_max), 1.0),
                  "start.phi_max, by Eqs. 5.1 and 5.5 with M = 1");
+  } else if (remembers() && !(result_.state.nu > laws().memory.over.phi_SJ)) {
+    set_phi_J(laws().memory.over.phi_SJ,
+              "memory.phi_SJ: nu is not above it, and nothing says that it ever was");
   } else {
     set_phi_J(jamming_density(laws().pressure), "nu_c of " + pressure_law());
   }

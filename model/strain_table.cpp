@@ -51,7 +51,7 @@ MeasuredPath strain_path(const Record& table, const std::string& file, std::opti
   Path asked;
   asked.file = file;
   asked.start.nu = strains.start("nu", nu, inside(0, 1));
-  asked.start.P = strains.start("P", P, between(0, largest_stress));
+  asked.start.P = strains.start("P", P, of_k_star(between(0, largest_stress)));
   if (!asked.start.nu)
     throw Error(file, "nu", "is missing: the volume fraction of the first row, as a column or by --nu");
   asked.segments.resize(1);

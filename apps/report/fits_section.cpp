@@ -185,8 +185,8 @@ Markup fits_section(const Inputs& inputs, const std::vector<FitView>& fits) {
   if (fits.empty()) return absent("No fits: fits.json is not there, or holds none.");
   return "<h3>Isotropic laws</h3>\n"_html + isotropic_figures(inputs, fits) +
          "<h3>Shear at constant volume</h3>\n"_html + shear_run_figures(inputs, fits) +
-         saturation_figure(fits) + moduli_figures(inputs, fits) + memory_figures(fits) + other_figures(fits) +
-         quality(fits) + left_out(inputs);
+         saturation_figure(fits) + moduli_figures(inputs, fits) + memory_figures(fits) +
+         memory_states_figure(inputs, fits) + other_figures(fits) + quality(fits) + left_out(inputs);
 }
 
 }  // namespace grainlaw::report

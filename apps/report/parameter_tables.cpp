@@ -234,7 +234,7 @@ Markup memory_table(const Entries& entries) {
   return "<h3>Memory of the jamming density (Eqs. 5.1 – 5.13), beside chapter 5</h3>\n"_html +
          matrix(entries, "memory", {""}, {"Value"_html},
                 {"phi_SJ", "alpha_max", "alpha_phi", "mu", "beta", "alpha", "eps0", "eps0_R", "phi_cr",
-                 "eps_c", "eps_r"});
+                 "eps_c", "hold"});
 }
 
 /// A number that was not fitted here, with every row that shares it.

@@ -37,6 +37,9 @@ Markup moduli_figures(const Inputs& inputs, const std::vector<FitView>& fits);
 /// The jamming density over cycles and amplitudes of over-compression, and the strains that jam: the figures
 /// of chapter 5; nothing where there are none.
 Markup memory_figures(const std::vector<FitView>& fits);
+/// The phase diagram of packings at rest along shear, their stresses, and what shear to and fro does to the
+/// jamming density; nothing where no test has any.
+Markup memory_states_figure(const Inputs& inputs, const std::vector<FitView>& fits);
 /// Fits of any other kind, one figure each.
 Markup other_figures(const std::vector<FitView>& fits);
 

@@ -130,9 +130,9 @@ const std::vector<Symbol> memory{
     {"memory.phi_cr", "<var>φ</var><sub>cr</sub>", "{/:Italic φ}_{cr}", "–",
      "Density below which a reversal of shear unjams the packing."},
     {"memory.eps_c", "<var>ε</var><sub>c</sub>", "{/:Italic ε}_c", "–",
-     "Strain in which shear along its fabric takes phi_J towards that of steady shear (form memory)."},
-    {"memory.eps_r", "<var>ε</var><sub>r</sub>", "{/:Italic ε}_r", "–",
-     "Strain in which shear against its fabric gives phi_J back (form memory)."},
+     "Strain by which the memory of shear is later than the fabric (form memory)."},
+    {"memory.hold", "<var>h</var>", "{/:Italic h}", "–",
+     "Part of the fabric's rate that steady shear takes (form memory)."},
 };
 
 const std::vector<Symbol> volumetric{
@@ -236,7 +236,6 @@ std::string mode_name(const std::string& mode) {
 std::string form_name(const std::string& form) {
   if (form == "reduced_closed") return "reduced, closed form";
   if (form == "reduced") return "reduced, rate form";
-  if (form.starts_with("memory")) return "with memory" + form.substr(6);
   return form;
 }
 
@@ -252,6 +251,7 @@ std::string form_colour(const std::string& form) {
   if (form == "reduced_closed") return "#56b4e9";
   if (form == "reduced") return "#0072b2";
   if (form == "coupled") return "#d55e00";
+  if (form.starts_with("memory")) return "#009e73";
   return ink;
 }
 

@@ -7,7 +7,7 @@ points=$(mktemp -d)
 trap 'rm -rf "$points"' EXIT
 # For each packing a table: amplitude; B and G_oct over those of linear response; contacts changed in either probe;
 # contacts still changed after the way back; what is left of the stresses over the linear ones. Means of both signs.
-for nu in 0.75 0.68; do
+for nu in 0.75 0.68 0.705 0.81; do
   awk -F, -v out="$points/$nu" '
     NR == 1 {for (k = 1; k <= NF; ++k) c[$k] = k; next}
     function size(x) {return x < 0 ? -x : x}
@@ -21,7 +21,7 @@ for nu in 0.75 0.68; do
         (ml + $c["left_by_shear"]) / 2, (bl + size($c["B_left"])) / 2 / B, (gl + size($c["G_oct_left"])) / 2 / G >f
     }' "data/bench/amplitude-9261/nu-$nu.csv"
   for state in 0 1; do
-    echo "nu $nu, $([ $state = 0 ] && echo isotropic || echo sheared): amplitude, B, G_oct, changed (volume, shear), still changed, B left, G_oct left"
+    echo "nu $nu, $([ $state = 0 ] && echo first || echo sheared): amplitude, B, G_oct, changed (volume, shear), still changed, B left, G_oct left"
     cat "$points/$nu-$state"
   done
 done

@@ -65,9 +65,9 @@ ini(k) = value(sprintf("ini_%d", k))
 plot for [k=1:n] word(tables, k) using (only(1e4*column("sigma_dev")*column("F_dev"))):(column("G_oct")/column("B") - ini(k)) with points pt 7 lc rgb colour(k), \
      -g_I*x*1e-4 lc rgb red lw 2 title sprintf("−%.0f σ*_{dev} F_{dev}", g_I), -86*x*1e-4 dt 2 lc "black" title "−86 σ*_{dev} F_{dev}, thesis"
 
-set xlabel "3.60 F_{dev}/F_v + 0.149 s_{dev}"; set ylabel "A_1/B = ⅔ A_2/B, prestress taken out"
+set xlabel "3.52 F_{dev}/F_v + 0.158 s_{dev}"; set ylabel "A_1/B = ⅔ A_2/B, prestress taken out"
 set xrange [-0.01:0.14]; set xtics 0.04; set yrange [-0.02:0.16]
 set key top left reverse Left
-plot for [k=1:n] word(tables, k) using (only(3.60*column("F_dev")/column("F_v") + 0.149*column("sigma_dev")/column("P"))):(A0(0)/B0(0)) with points pt 7 lc rgb colour(k), \
+plot for [k=1:n] word(tables, k) using (only(3.52*column("F_dev")/column("F_v") + 0.158*column("sigma_dev")/column("P"))):(A0(0)/B0(0)) with points pt 7 lc rgb colour(k), \
      x lc rgb red lw 2 title "equal"
 unset multiplot

@@ -2,18 +2,20 @@
 // that over-compression raises (Eqs. 5.1, 5.5), and that shear takes away and gives back at a reversal (the
 // thesis has Eqs. 5.3 and 5.13 for that; here it is one rate).
 //
-// Shear is remembered as m in [0, 1], 0 where it is forgotten and 1 in steady shear. With a = q F_dev/F_max,
-// the alignment of the fabric with the direction of shear,
-//   dm    = (1 - m) <a>/eps_c |d eps_dev| - m <-a>/eps_r |d eps_dev|
+// Shear is remembered as m in [0, 1], 0 where it is forgotten and 1 in steady shear. It follows the square of
+// the fabric, late by the strain eps_c:
+//   dm    = [min(1, (F_dev/F_max)^2) - m] |d eps_dev|/eps_c
+// and what is remembered holds the fabric: dF_dev is that of Eq. 4.16 times 1 - hold m.
 //   phi_J = phi_H + (phi_s - phi_H) m, or phi_H where that is below phi_s
 //   P*    = Eq. 2.14 at phi_J; its numbers go from the isotropic row to that of steady shear as m goes from 0
 //           to 1
-// dsigma*_dev and dF_dev are those of Eq. 4.16. phi_H is what over-compression has left, phi_s where pressure
+// dsigma*_dev is that of Eq. 4.16. phi_H is what over-compression has left, phi_s where pressure
 // begins in steady shear.
 //
-// From isotropy a = 1 - exp(-beta_F eps_dev), so m begins with no slope, as exp[-(eps/eps0)^alpha] does with
-// alpha > 1, but without its singular strain; after a reversal the fabric has to turn first, and phi_J comes
-// back meanwhile: nothing jumps.
+// From isotropy F_dev/F_max = 1 - exp(-beta_F eps_dev), so m begins as eps_dev^3, without the singular strain
+// of exp[-(eps/eps0)^alpha]. After a reversal the fabric has to turn, through isotropy, and phi_J comes back
+// meanwhile: nothing jumps, and dm/d eps_dev = 0 on both sides of a reversal of steady shear, so that cycles
+// much smaller than 1/beta_F leave m alone.
 #pragma once
 
 #include <algorithm>
@@ -170,12 +172,12 @@ struct BasicMemory {
     }
     if (laws.terms.volumetric) dydt[1] = fabric_by_volume(laws.volumetric, v, F);
     if (!shears) return true;
-    dydt[1] = dydt[1] + approach_rate(q * c.F_max, F, c.beta_F * (size_e / direction.S_F_I));
-    const auto a = q * F / c.F_max;
-    if (a > 0)
-      dydt[2] = (1 - m) * a * (size_e / laws.memory.eps_c);
-    else
-      dydt[2] = m * a * (size_e / laws.memory.eps_r);
+    const auto free = 1 - laws.memory.hold * m;
+    dydt[1] = dydt[1] + approach_rate(q * c.F_max, F, c.beta_F * free * (size_e / direction.S_F_I));
+    const auto f = F / c.F_max;
+    R aligned = f * f;
+    if (aligned > 1) aligned = 1.0;
+    dydt[2] = approach_rate(aligned, m, size_e / laws.memory.eps_c);
     return true;
   }
   /// The fastest rate of approach, per unit t.
@@ -184,8 +186,7 @@ struct BasicMemory {
                     const BasicDirection<S>& direction, const S* y) const {
     const double e = std::abs(value(stretch.eps_dev));
     if (e == 0) return 0;
-    double rate = std::max(value(c.beta_F) / value(direction.S_F_I),
-                           1 / std::min(value(laws.memory.eps_c), value(laws.memory.eps_r)));
+    double rate = std::max(value(c.beta_F) / value(direction.S_F_I), 1 / value(laws.memory.eps_c));
     if (direction.jammed) {
       const auto curve = curve_of(c.phi_H, y[2]);
       const auto [B, ratio_ini] = stiffness(curve, Meet<C, S>(c.nu));

@@ -82,7 +82,8 @@ Status LightLaw::admits(const State& state, const Stretch& stretch) const {
   if (!is_finite(state))
     return {Status::Code::failed,
             "the state holds what is not a number: nu, P, sigma_dev, F_dev or its memory"};
-  if (!(state.memory >= 0 && state.memory <= 1))
+  constexpr double slack = 1e-6;  // of an integration
+  if (!(state.memory >= -slack && state.memory <= 1 + slack))
     return {Status::Code::failed, "the memory of shear must be in [0, 1], got " + shown(state.memory)};
   if (!std::isfinite(stretch.eps_vol) || !std::isfinite(stretch.eps_dev))
     return {Status::Code::failed, "the strain increment must be finite, got eps_vol = " +

@@ -206,7 +206,11 @@ TEST_F(BadInput, ARecordThatNoPackingCanHave) {
 TEST_F(BadInput, CommandLines) {
   const std::vector<std::pair<Arguments, std::string>> lines{
       {{}, "grainlaw: A subcommand is required"},
-      {{"calibrat"}, "unknown command \"calibrat\""},
+      {{"calibrat"}, "unknown command \"calibrat\"; known are calibrate, simulate, predict"},
+      {{"bench"}, "grainlaw bench: must be followed by one of dem, model; see grainlaw bench --help"},
+      {{"bench", "models"},
+       "grainlaw bench: must be followed by one of dem, model; see grainlaw bench --help"},
+      {{"infer-phij", "r.csv", "--mode", "iso2"}, "--mode: must be one of iso, uni, d2, d3, got \"iso2\""},
       {{"--vesion"}, "grainlaw: unknown option --vesion; see grainlaw --help"},
       {{"simulate"}, "grainlaw simulate: SCENE.json is required; see grainlaw simulate --help"},
       {{"simulate", "s.json"}, "simulate: -o DIR is missing"},

@@ -115,6 +115,11 @@ TEST_F(Predict, FollowsATableOfStrains) {
     EXPECT_NEAR(again["sigma_dev"][i], walked["sigma_dev"][i], 1e-8) << i;
   write("bare.csv", "eps_vol,eps_dev\n0,0\n0,0.1\n");
   EXPECT_EQ(predict({"--nu", "0.7", "--P", "0.02"}, "bare.csv")["P"][0], 0.02);
+  // k/(2<r>) of the thesis's grains is 1e8 kg/s2 over 2 mm: 50 GPa.
+  EXPECT_DOUBLE_EQ(predict({"--nu", "0.7", "--P", "1e6kPa"}, "bare.csv")["P"][0], 0.02);
+  EXPECT_TRUE(
+      refuses(run({"predict", "data/thesis/parameters.json", "bare.csv", "--nu", "0.7", "--P", "50"}),
+              {"--P: must be a number between 0 and 1, over k* = 50000000 kPa, or in kPa with that unit"}));
   EXPECT_TRUE(
       refuses(run({"predict", "data/thesis/parameters.json", "bare.csv"}), {"bare.csv: nu: is missing"}));
   write("bad.csv", "eps_vol,eps_dev\n0,0\n0,\n");
@@ -166,6 +171,22 @@ TEST_F(Predict, EnvelopeOfTheEndOfAPath) {
   EXPECT_TRUE(
       refuses(run({"predict", "data/thesis/parameters.json", "data/paths/d3.json", "--envelope", "2"}),
               {"--envelope: must be a number > 0 and <= 0.1"}));
+}
+
+TEST_F(Predict, TheMinimalFormIsEvaluated) {
+  const std::string set = "data/thesis/near-jamming.json";
+  const Record record = predict({"--form", "minimal", "--rows", "20"}, "data/paths/shear-jamming.json", set);
+  EXPECT_EQ(record.columns(), prediction_columns());
+  ASSERT_EQ(record.rows(), 101u);
+  EXPECT_EQ(record["P"][10], 0);  // 0.14 of strain: the thesis jams at 0.1444
+  EXPECT_GT(record["P"][11], 0);
+  EXPECT_NEAR(record["s_dev"].back(), 0.21, 0.01);
+  EXPECT_THAT(last.err, HasSubstr("memory.phi_cr is missing"));
+  EXPECT_TRUE(refuses(
+      run({"predict", set, "data/paths/shear-jamming.json", "--form", "minimal", "--envelope", "1e-4"}),
+      {"--form: minimal has no rates"}));
+  EXPECT_TRUE(refuses(run({"predict", set, "data/paths/triaxial.json", "--form", "minimal"}),
+                      {"--form: minimal follows a path by strain"}));
 }
 
 TEST_F(Predict, EveryThesisSetPredicts) {

@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/static_packing.hpp"
+#include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/record.hpp"
+#include "grainlaw/element/tensor.hpp"
 #include "program.hpp"
 
 namespace grainlaw::apps {
@@ -48,14 +53,15 @@ TEST_F(ProbeCommand, EveryFrameThatBearsLoad) {
 TEST_F(ProbeCommand, MoreColumnsByName) {
   ASSERT_EQ(run({"probe", "r/snapshots.h5", "-o", "plain.csv"}).status, 0);
   ASSERT_EQ(run({"probe", "r/snapshots.h5", "--amplitude", "1e-6", "--axis", "uni", "--undo", "--also",
-                 "waves,floppy,young", "--also", "symmetry,eigenvalues,young", "-o", "m.csv"})
+                 "waves,floppy,young,invariants,affine,stress", "--also", "symmetry,eigenvalues,young", "-o",
+                 "m.csv"})
                 .status,
             0);
   const std::vector<std::string> plain = Record::read_csv(folder / "plain.csv").columns();
-  const Record record = Record::read_csv(folder / "m.csv");
-  ASSERT_GT(record.columns().size(), plain.size());
+  const Record record = read_moduli(folder / "m.csv");
+  ASSERT_EQ(record.columns().size(), plain.size() + 8 + 6 + 10 + 9 + 21 + 1 + 4 + 4 + 42);
   EXPECT_TRUE(std::equal(plain.begin(), plain.end(), record.columns().begin()));
-  EXPECT_EQ(record.columns().back(), "floppy");
+  EXPECT_EQ(record.columns().back(), "S_xy_xy");
   EXPECT_EQ(record["floppy"][0], 0);
   EXPECT_LT(record["eigenvalue_1"][0], record["eigenvalue_6"][0]);
   // The largest belongs to nearly isotropic compression: 3 K.
@@ -66,10 +72,52 @@ TEST_F(ProbeCommand, MoreColumnsByName) {
   EXPECT_GT(record["Young_z"][0], 0);
   EXPECT_LT(std::abs(record["Poisson_xy"][0]), 1);
   EXPECT_LT(record["speed_xyz_1"][0], record["speed_xyz_3"][0]);
+  EXPECT_GT(record["B_affine"][0], record["B"][0]);  // bounds
+  EXPECT_GT(record["G_oct_affine"][0], record["G_oct"][0]);
+  EXPECT_NEAR((record["sigma_xx"][0] + record["sigma_yy"][0] + record["sigma_zz"][0]) / 3, record["P"][0],
+              1e-9);
+  double bulk = 0;
+  for (const char* a : {"xx", "yy", "zz"})
+    for (const char* b : {"xx", "yy", "zz"}) bulk += record[std::string("S_") + a + "_" + b][0] / 9;
+  EXPECT_NEAR(bulk, record["B"][0], 1e-12);
+  // sqrt(3 J2) of the whole tensor: more than lies along one axis, and its derivative less.
+  EXPECT_GE(std::abs(record["sigma_dev_inv"][0]), std::abs(record["sigma_dev"][0]));
+  EXPECT_GE(std::abs(record["F_dev_inv"][0]), std::abs(record["F_dev"][0]));
   EXPECT_TRUE(std::isnan(record["B_left"][0]));
   EXPECT_NEAR(record["B_left"][1], 0, 1e-2 * record["B"][0]);
   EXPECT_EQ(record["changed_by_volume"][1] + record["changed_by_shear"][1], record["contacts_changed"][1]);
   EXPECT_TRUE(std::isnan(record["floppy"][1]));
+}
+
+/// sqrt(3 J2) of the balanced packing, strained by d2 so that eps_dev is `shear` and eps_vol is `volume`.
+double deviator_at(const fs::path& snapshots, double shear, double volume) {
+  const Material material;
+  dem::StaticPacking packing(material,
+                             dem::read_frame(snapshots.string(), {.nu = {}, .frame = 2, .segment = {}}));
+  dem::MinimiseOptions options;
+  options.residual = 1e-11;
+  dem::minimise(packing, options);
+  const double x = shear / std::sqrt(3.0), v = volume / 3;
+  packing.deform(dem::Mat3::diagonal({std::exp(x - v), std::exp(-x - v), std::exp(-v)}) *
+                 packing.cell().edges());
+  dem::minimise(packing, options);
+  return deviator_magnitude(packing.measure().stress) / material.stress_unit();
+}
+
+TEST_F(ProbeCommand, InvariantsAgainstDifferences) {
+  ASSERT_EQ(run({"probe", "r/snapshots.h5", "--also", "invariants", "-o", "m.csv"}).status, 0);
+  const Record record = read_moduli(folder / "m.csv");
+  const fs::path snapshots = folder / "r/snapshots.h5";
+  constexpr double h = 1e-6;
+  const double q = deviator_at(snapshots, 0, 0), sign = record["sigma_dev"][1] < 0 ? -1 : 1;
+  EXPECT_NEAR(record["sigma_dev_inv"][1], sign * q, 1e-9);
+  EXPECT_NEAR(record["G_oct_inv"][1],
+              sign * (deviator_at(snapshots, h, 0) - deviator_at(snapshots, -h, 0)) / (2 * h),
+              1e-4 * record["B"][1]);
+  EXPECT_NEAR(record["A2_inv"][1],
+              sign * (deviator_at(snapshots, 0, h) - deviator_at(snapshots, 0, -h)) / (2 * h),
+              1e-4 * record["B"][1]);
+  EXPECT_GT(std::abs(record["G_oct_inv"][1] - record["G_oct"][1]), 1e-2 * record["B"][1]);
 }
 
 TEST_F(ProbeCommand, BadInput) {
@@ -79,7 +127,8 @@ TEST_F(ProbeCommand, BadInput) {
   };
   EXPECT_TRUE(refused({"-o", "m.csv", "--axis", "x"}, {"--axis: must be d2 (-1, 1, 0), d3", "got x"}));
   EXPECT_TRUE(refused({"-o", "m.csv", "--also", "young,shear"},
-                      {"--also: must be eigenvalues, symmetry, young, waves or floppy, got shear"}));
+                      {"--also: must be eigenvalues, symmetry, young, waves, floppy, invariants, affine or "
+                       "stress, got shear"}));
   EXPECT_TRUE(refused({"-o", "m.csv", "--undo"}, {"--undo: must come with a strain to undo"}));
   EXPECT_TRUE(
       refused({"-o", "m.csv", "--amplitude", "0"}, {"--amplitude: must be a number >= 1e-09", "got 0"}));
@@ -87,6 +136,8 @@ TEST_F(ProbeCommand, BadInput) {
                       {"--amplitude: must be at least 1000 times the residual, which is 0.001; got 1e-6"}));
   EXPECT_TRUE(refused({"-o", "no/m.csv"}, {"-o: must lie in a directory that exists, got no/m.csv"}));
   EXPECT_TRUE(refused({"-o", "r/scene.json"}, {"-o", "r/scene.json"}));
+  EXPECT_TRUE(refuses(run({"probe", "r", "-o", "m.csv"}),
+                      {"r: is a directory; the snapshots of a record are its snapshots.h5"}));
   EXPECT_TRUE(refuses(run({"probe", "no.h5", "-o", "m.csv"}), {"no.h5: no such file"}));
   EXPECT_FALSE(fs::exists(folder / "m.csv"));
 }

@@ -90,14 +90,16 @@ double error_on_cycle(const std::string& nu, int seed, model::Form form) {
   return relative_distance(predicted.record["P"], record["P"]);
 }
 
-// Two packings differ by 0.023, 0.012 and 0.008 at these densities: below that there is nothing to gain.
+// eps_c is that of first loadings, hold of these cycles. Two packings differ by 0.023, 0.012 and 0.008 at
+// these densities: the mean of both errs by half of that, which is a factor of 2.7 on the coupled form at
+// 0.75.
 TEST(BaseCampaign, MemoryHoldsThePressureOfCycles) {
   for (const int seed : {1, 2}) {
     EXPECT_LT(error_on_cycle("0.685", seed, model::Form::memory),
-              error_on_cycle("0.685", seed, model::Form::coupled) / 5);
+              error_on_cycle("0.685", seed, model::Form::coupled) / 8);
     EXPECT_LT(error_on_cycle("0.711", seed, model::Form::memory),
-              error_on_cycle("0.711", seed, model::Form::coupled) / 3);
-    EXPECT_LT(error_on_cycle("0.75", seed, model::Form::memory), 0.012);
+              error_on_cycle("0.711", seed, model::Form::coupled) / 4.5);
+    EXPECT_LT(error_on_cycle("0.75", seed, model::Form::memory), 0.0085);
   }
 }
 

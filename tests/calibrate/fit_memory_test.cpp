@@ -227,6 +227,34 @@ TEST(MemoryFits, WithoutRunsTheKnownValuesStandMarkedAsHeld) {
   EXPECT_FALSE(result.reversal["phi_cr"].determined);
 }
 
+TEST(MemoryFits, AnAmplitudeThatOftenLeavesPackingsLooseIsNoFairSample) {
+  std::vector<CycleDensity> cycles = cycles_of(thesis, 20);
+  const double one = cycles.back().phi_max;
+  const std::size_t all = over_compression_problem(cycles, Growth::stretched, thesis_values).series.size();
+  const auto lose = [&](std::size_t count) {
+    for (CycleDensity& c : cycles)
+      if (c.phi_max == one && c.M <= static_cast<double>(count)) c.from_P = {};
+    return over_compression_problem(cycles, Growth::stretched, thesis_values).series;
+  };
+  EXPECT_EQ(lose(2).size(), all);
+  EXPECT_EQ(lose(2).back().points.size(), 18u);
+  EXPECT_EQ(lose(3).size(), all - 3);  // of three seeds
+  EXPECT_LT(lose(3).back().points.front().x, one);
+}
+
+TEST(MemoryFits, RelaxedStatesTellTheLimitWithTheOthers) {
+  const Estimate at_rest(0.6569, 1e-4);
+  const MemoryFit result = fit_memory(cycles_of(thesis, 6), shear_runs(), thesis_values, at_rest);
+  // Data without noise: what the laws say is certain, to rounding, and outweighs the relaxed states.
+  EXPECT_EQ(result.phi_SJ.by_rest.value, 0.6569);
+  EXPECT_NEAR(result.phi_SJ.value, 0.6567, 1e-6);
+  EXPECT_TRUE(result.over_compression["phi_SJ"].held);
+  // Without runs it is theirs, and the law of cycles stands at it.
+  const MemoryFit alone = fit_memory({}, {}, thesis_values, at_rest);
+  EXPECT_NEAR(alone.phi_SJ.value, 0.6569, 1e-12);
+  EXPECT_NEAR(alone.phi_SJ.error, 1e-4, 1e-12);
+}
+
 /// Packings differ by an offset of phi_J each: the errors must come from that, and hold the truth as often as
 /// Student's t says.
 TEST(MemoryFits, ErrorsComeFromTheScatterOverSeeds) {

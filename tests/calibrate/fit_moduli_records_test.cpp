@@ -6,6 +6,8 @@
 
 #include "fit_fixture.hpp"
 #include "grainlaw/calibrate/fit_records.hpp"
+#include "grainlaw/element/file.hpp"
+#include "grainlaw/element/json.hpp"
 #include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/model/laws/moduli.hpp"
 
@@ -126,6 +128,29 @@ TEST_F(FitModuliRecords, AnUnknownColumnIsAnError) {
     EXPECT_EQ(std::string(error.what()).substr(table(0.71).string().size()),
               ": mu: is no column of a table of moduli (docs/formats.md lists them)");
   }
+}
+
+/// A table that lost states at the end of a line, and one that is gone.
+TEST_F(FitModuliRecords, LostStatesAreAnError) {
+  const std::filesystem::path file = table(0.71), scene = file.parent_path() / "scene.json";
+  Json asked = load_json(scene);
+  Json states = Json::array();
+  for (const double eps_dev : strains) states.push_back({{"segment", 0}, {"eps_dev", eps_dev}});
+  asked["measure"]["moduli"] = states;
+  write_file(scene, asked.dump());
+  const auto said = [&] {
+    try {
+      fitted();
+    } catch (const Error& error) {
+      return std::string(error.what()).substr(file.string().size());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(said(), "accepted");
+  edit(file, [](const std::string& text) { return text.substr(0, text.rfind('\n', text.size() - 2) + 1); });
+  EXPECT_EQ(said(), ": must have 7 states as its scene says, got 6: it is cut short or of another scene");
+  std::filesystem::remove(file);
+  EXPECT_EQ(said(), ": no such file, and the scene asks for moduli");
 }
 
 }  // namespace

@@ -195,6 +195,15 @@ TEST(ModuliSelection, APackingThatWouldGiveWayIsNoState) {
   EXPECT_EQ(count.text(), "1 state that would give way to a strain of the box");
 }
 
+/// -0 is no modulus to divide by.
+TEST(ModuliSelection, WithoutBulkModulusItIsNoState) {
+  const Record made =
+      rows({{0, 0, 0, -0.0, 0, 0, 900, 3000, 1e-11}, {0, 0.1, 0, 0.5, 0, 0, 900, 3000, 1e-11}});
+  ModuliCount count;
+  EXPECT_EQ(moduli_states(made, "d2-s1", "1", 0, count).states.size(), 1u);
+  EXPECT_EQ(count.soft, 1u);
+}
+
 TEST(ModuliSelection, ProbesThatChangedContactsAreNeverAveragedIn) {
   const double none = std::nan("");
   const Record made =

@@ -21,7 +21,7 @@ std::filesystem::path table_of(const std::string& nu, int seed) {
 /// All tests of data/moduli.
 std::vector<calibrate::ModuliSeries> all_series() {
   std::vector<calibrate::ModuliSeries> all;
-  for (int seed = 1; seed <= 2; ++seed)
+  for (int seed = 1; seed <= 3; ++seed)
     for (const char* nu : densities) {
       calibrate::ModuliCount count;
       const std::string name = std::string("d2-") + nu + "-s" + std::to_string(seed);
@@ -39,23 +39,27 @@ calibrate::ModuliFit refitted(const std::vector<calibrate::ModuliSeries>& series
   return calibrate::fit_moduli(series, contacts, 1.22475, {0.6581, 0}, {});
 }
 
-void expect_near(const calibrate::FitEstimate& e, double value, double error) {
+/// One packing, as the thesis has, differs from the mean of three by sqrt(1 + 3) standard errors of it;
+/// Student's t of two degrees of freedom exceeds 9.9 in one of a hundred cases.
+void expect_near(const calibrate::FitEstimate& e, double value) {
   ASSERT_TRUE(e.stderr_) << e.name;
-  EXPECT_NEAR(e.value, value, 3 * std::hypot(*e.stderr_, error)) << e.name << " +- " << *e.stderr_;
+  EXPECT_NEAR(e.value, value, 2 * 9.9 * *e.stderr_) << e.name << " +- " << *e.stderr_;
 }
 
 /// docs/moduli.md has these numbers.
 TEST(Moduli, LawsRefitted) {
   const calibrate::ModuliFit fit = refitted(all_series());
   EXPECT_NEAR(fit.B.value("p0"), 0.0412, 5e-5);  // to the last digit printed
-  EXPECT_NEAR(fit.B.value("gamma_p"), 0.105, 5e-4);
-  EXPECT_NEAR(fit.A1.value("a_I"), 0.727, 5e-4);
+  EXPECT_NEAR(fit.B.value("gamma_p"), 0.107, 5e-4);
+  EXPECT_NEAR(fit.A1.value("a_I"), 0.729, 5e-4);
   EXPECT_NEAR(fit.A2.value("a_II"), 1.173, 5e-4);
-  EXPECT_NEAR(fit.GB_ini.value("GB_max"), 0.519, 5e-4);
-  EXPECT_NEAR(fit.GB_ini.value("Fv_min"), 4.38, 5e-3);
-  EXPECT_NEAR(fit.GB_ini.value("Fv_alpha"), 1.56, 5e-3);
-  EXPECT_NEAR(fit.G.value("g_I"), 129, 0.5);
+  EXPECT_NEAR(fit.GB_ini.value("GB_max"), 0.511, 5e-4);
+  EXPECT_NEAR(fit.GB_ini.value("Fv_min"), 4.47, 5e-3);
+  EXPECT_NEAR(fit.GB_ini.value("Fv_alpha"), 1.44, 5e-3);
+  EXPECT_NEAR(fit.G.value("g_I"), 124, 0.5);
   for (const auto* law : {&fit.B, &fit.A1, &fit.A2, &fit.GB_ini, &fit.G}) EXPECT_TRUE(law->determined());
+  for (const auto* law : {&fit.B, &fit.A1, &fit.A2, &fit.A, &fit.G})
+    EXPECT_EQ(law->stderr_from, "scatter over seeds");
 }
 
 /// Table 4.1's p0 and gamma_p are those of sheared states: nu_c and contacts of Eq. 4.11 are theirs.
@@ -64,8 +68,8 @@ TEST(Moduli, BulkModulusOfShearedStatesIsTheThesis) {
   for (calibrate::ModuliSeries& series : sheared)
     std::erase_if(series.states, [](const auto& state) { return state.eps_dev < 0.1; });
   const calibrate::FitResult fit = refitted(sheared).B;
-  expect_near(fit["p0"], 0.0425, 0);
-  expect_near(fit["gamma_p"], 0.2, 0);
+  expect_near(fit["p0"], 0.0425);
+  expect_near(fit["gamma_p"], 0.2);
 }
 
 /// Why a_I is another number than Table 4.1's: it depends on density, and 0.66 lies between. A2/A1 does too.
@@ -103,7 +107,7 @@ calibrate::FitResult fabric_alone(calibrate::FitProblem problem,
 }
 
 TEST(Moduli, TheEnergyHasOneAnisotropyModulus) {
-  for (int seed = 1; seed <= 2; ++seed)
+  for (int seed = 1; seed <= 3; ++seed)
     for (const char* nu : densities) {
       const Record r = read_moduli(table_of(nu, seed));
       for (std::size_t k = 0; k < r.rows(); ++k) {
@@ -118,13 +122,13 @@ TEST(Moduli, TheEnergyHasOneAnisotropyModulus) {
 TEST(Moduli, WithoutPrestressFabricAndStressLeaveLessScatter) {
   const std::vector<calibrate::ModuliSeries> states = all_series();
   const calibrate::ModuliFit fit = refitted(states);
-  EXPECT_NEAR(fit.A.value("a_F"), 3.60, 0.01);
-  EXPECT_NEAR(fit.A.value("a_s"), 0.149, 0.001);
-  EXPECT_NEAR(fit.A.rms, 0.0069, 1e-4);
+  EXPECT_NEAR(fit.A.value("a_F"), 3.52, 0.01);
+  EXPECT_NEAR(fit.A.value("a_s"), 0.158, 0.001);
+  EXPECT_NEAR(fit.A.rms, 0.0067, 1e-4);
   EXPECT_TRUE(fit.A.determined());
   const calibrate::FitResult one = fabric_alone(fit.A_law, states);
-  EXPECT_NEAR(one.values().front(), 0.772, 0.001);
-  EXPECT_NEAR(one.rms, 0.0084, 1e-4);
+  EXPECT_NEAR(one.values().front(), 0.773, 0.001);
+  EXPECT_NEAR(one.rms, 0.0087, 1e-4);
 }
 
 /// Slopes of A1/B and A2/B over F_dev, of the rows by linear response.
@@ -161,21 +165,102 @@ TEST(Moduli, RatioOfA2ToA1RisesWithDensity) {
   EXPECT_NEAR(before, 2.15, 0.01);
 }
 
+/// Sums over the states of tables with begin < eps_dev < end.
+struct InitialShear {
+  double ratio = 0;  ///< of G_oct/B to the thesis's Eq. 4.14, mean
+  double G = 0, G_of_invariants = 0;
+};
+
+InitialShear initial_shear(const std::vector<std::filesystem::path>& tables, double begin, double end) {
+  InitialShear sum;
+  double n = 0;
+  for (const auto& table : tables) {
+    const Record r = read_moduli(table);
+    for (std::size_t k = 0; k < r.rows(); ++k) {
+      if (r["amplitude"][k] != 0 || r["eps_dev"][k] < begin || r["eps_dev"][k] > end) continue;
+      sum.ratio += r["G_oct"][k] / r["B"][k] / (0.51 * (1 - std::exp(-(r["F_v"][k] - 4.2) / 1.9)));
+      sum.G += r["G_oct"][k];
+      if (r.has("G_oct_inv")) sum.G_of_invariants += r["G_oct_inv"][k];
+      n += 1;
+    }
+  }
+  sum.ratio /= n;
+  return sum;
+}
+
+/// docs/moduli.md, "Why the thesis's G is smaller": states at eps_dev about 0.008, and sqrt(3 J2) of the
+/// whole stress in place of what lies along the axis of shear, give Eq. 4.14 as the thesis has it.
+TEST(Moduli, ThesisTakesInitialShearFromShearedStatesByInvariants) {
+  std::vector<std::filesystem::path> all, start;
+  for (const char* nu : densities) {
+    start.push_back(std::string(GRAINLAW_DATA_DIR "/moduli/start-") + nu + "-s3.csv");
+    for (int seed = 1; seed <= 2; ++seed) all.push_back(table_of(nu, seed));
+  }
+  all.insert(all.end(), start.begin(), start.end());
+  constexpr double scatter = 0.011;  // of the mean over 15 tests
+  const double isotropic = initial_shear(all, 0, 0.0045).ratio;
+  const double sheared = initial_shear(all, 0.0055, 0.0125).ratio;
+  EXPECT_GT(isotropic, 1 + 4 * scatter);
+  const InitialShear both = initial_shear(start, 0.0055, 0.0125);
+  const double by_invariants = both.G_of_invariants / both.G;
+  EXPECT_NEAR(by_invariants, 0.966, 5e-3);
+  EXPECT_NEAR(sheared * by_invariants, 1, 2 * scatter);
+}
+
+/// Mean G_oct/B of every direction of shear at this density, of three packings compressed to nu = 0.98: 2 mu
+/// of the nearest isotropic solid, less the prestress; and what it is without prestress.
+struct ShearRatio {
+  double with = 0, without = 0;
+};
+
+ShearRatio shear_ratio_at(double nu) {
+  ShearRatio mean;
+  for (int seed = 1; seed <= 3; ++seed) {
+    const Record r =
+        read_moduli(std::string(GRAINLAW_DATA_DIR "/moduli/iso-2000-s") + std::to_string(seed) + ".csv");
+    std::size_t k = 0;
+    while (std::abs(r["nu"][k] - nu) > 1e-4) ++k;
+    const auto E = [&](const char* component) { return r[std::string("E_") + component][k]; };
+    const double stretched = E("xx_xx") + E("yy_yy") + E("zz_zz") - E("xx_yy") - E("xx_zz") - E("yy_zz");
+    const double two_mu = (2 * stretched + 6 * (E("yz_yz") + E("xz_xz") + E("xy_xy"))) / 15;
+    mean.with += (two_mu - r["P"][k]) / r["B"][k] / 3;
+    mean.without += two_mu / (r["B"][k] - 2.0 / 3 * r["P"][k]) / 3;
+  }
+  return mean;
+}
+
+/// docs/moduli.md: the ceiling of Eq. 4.14 is a maximum over density, far below affinity, which prestress
+/// makes.
+TEST(Moduli, ShearOverBulkPassesAMaximum) {
+  const ShearRatio loose = shear_ratio_at(0.68), top = shear_ratio_at(0.81), dense = shear_ratio_at(0.98);
+  EXPECT_NEAR(loose.with, 0.292, 5e-4);
+  EXPECT_NEAR(top.with, 0.495, 5e-4);
+  EXPECT_NEAR(dense.with, 0.418, 5e-4);
+  EXPECT_NEAR(top.without, 0.698, 5e-4);
+  EXPECT_NEAR(dense.without, 0.803, 5e-4);
+  EXPECT_LT(dense.without, 1.2);  // affine
+}
+
 /// Where they change no contact, strains of 1e-6 measure what linear response says.
 TEST(Moduli, ProbesAgreeWithLinearResponse) {
-  for (const char* nu : densities) {
-    const Record r = read_moduli(table_of(nu, 1));
-    std::size_t response = 0, elastic = 0;
-    for (std::size_t k = 0; k < r.rows(); ++k) {
-      if (r["amplitude"][k] == 0) response = k;
-      if (r["amplitude"][k] == 0 || r["contacts_changed"][k] > 0) continue;
-      ++elastic;
-      for (const char* modulus : {"B", "A1", "A2", "G_oct"})
-        EXPECT_NEAR(r[modulus][k], r[modulus][response], 2e-3 * r["B"][response])
-            << nu << " " << modulus << " " << k;
+  std::size_t probes = 0, elastic = 0;
+  for (int seed = 1; seed <= 3; ++seed)
+    for (const char* nu : densities) {
+      const Record r = read_moduli(table_of(nu, seed));
+      std::size_t response = 0;
+      for (std::size_t k = 0; k < r.rows(); ++k) {
+        if (r["amplitude"][k] == 0) response = k;
+        if (r["amplitude"][k] == 0) continue;
+        ++probes;
+        if (r["contacts_changed"][k] > 0) continue;
+        ++elastic;
+        for (const char* modulus : {"B", "A1", "A2", "G_oct"})
+          EXPECT_NEAR(r[modulus][k], r[modulus][response], 2e-3 * r["B"][response])
+              << nu << " " << modulus << " " << k;
+      }
     }
-    EXPECT_GT(elastic, 20u) << nu;
-  }
+  EXPECT_EQ(probes, 630u);
+  EXPECT_EQ(elastic, 484u);
 }
 
 }  // namespace

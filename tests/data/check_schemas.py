@@ -123,9 +123,12 @@ def check_examples(schemas, data):
         reason = schemas.complaint(f"{file.stem}.schema.json", load(file)) if recorded else "under no schema"
         if reason:
             faults.append(f"{file.relative_to(data)}: {reason}")
-    for file in sorted((data / "memory").rglob("*.csv")):
+    tables = [(file, file.stem.split(".")[0].split("-")[0]) for file in sorted((data / "memory").rglob("*.csv"))]
+    for folder in ("moduli", "bench/amplitude-9261"):
+        tables += [(file, "moduli") for file in sorted((data / folder).glob("*.csv"))]
+    tables += [(file, "moduli") for file in sorted((data / "records").rglob("moduli.csv"))]
+    for file, kind in tables:
         count += 1
-        kind = file.stem.split(".")[0].split("-")[0]
         for row in rows_of(file):
             reason = schemas.complaint(f"{kind}.schema.json", row)
             if reason:

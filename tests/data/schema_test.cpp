@@ -126,9 +126,21 @@ TEST(Schema, ColumnsOfTheTablesOfMemory) {
             calibrate::over_compression_table({}).columns());
   EXPECT_EQ(schema("shear_jamming")["required"].get<std::vector<std::string>>(),
             calibrate::shear_jamming_table({}).columns());
+  EXPECT_EQ(schema("relaxed")["required"].get<std::vector<std::string>>(),
+            calibrate::relaxed_table({}).columns());
+  EXPECT_EQ(schema("tapped")["required"].get<std::vector<std::string>>(),
+            calibrate::tapped_table({}).columns());
+  for (const char* kind : {"relaxed", "tapped"})
+    EXPECT_EQ(keys(schema(kind)["properties"]), schema(kind)["required"].get<std::vector<std::string>>());
 }
 
-TEST(Schema, ColumnsOfATableOfModuli) { EXPECT_EQ(keys(schema("moduli")["properties"]), moduli_columns()); }
+TEST(Schema, ColumnsOfATableOfModuli) {
+  std::vector<std::string> columns = moduli_columns();
+  columns.insert(columns.end(), undo_columns().begin(), undo_columns().end());
+  for (const ElasticGroup& group : elastic_groups())
+    columns.insert(columns.end(), group.columns.begin(), group.columns.end());
+  EXPECT_EQ(keys(schema("moduli")["properties"]), columns);
+}
 
 TEST(Schema, ColumnsOfARecord) {
   const Json file = schema("record");

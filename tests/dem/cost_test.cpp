@@ -60,6 +60,22 @@ TEST(Cost, NothingObservedCostsNothing) {
   EXPECT_GT(cost.row_seconds, 0);
 }
 
+/// A state takes much longer than a row; what it does not ask for, nothing.
+TEST(Cost, ModuliCountWithTheRest) {
+  const std::string head = R"({"preparation": {"count": 64, "nu": 0.7},
+    "path": {"segments": [{"mode": "d2", "amount": 0.01}]}, "measure": {"rows": 1)";
+  const SceneCost with =
+      cost_of(scene_of(head + R"(, "moduli": [{"segment": 0, "eps_dev": 0.005}, {"segment": 0}]}})"));
+  EXPECT_EQ(with.moduli, 2u);
+  EXPECT_GT(with.moduli_seconds, with.row_seconds);
+  SceneCost less = with;
+  less.moduli = 0;
+  EXPECT_NEAR(with.seconds() - less.seconds(), 2 * with.moduli_seconds, 1e-9 * with.seconds());
+  const SceneCost without = cost_of(scene_of(head + "}}"));
+  EXPECT_EQ(without.moduli, 0u);
+  EXPECT_EQ(without.moduli_seconds, 0);
+}
+
 TEST(Cost, RefusesWhatARunRefuses) {
   const Scene narrow = scene_of(R"({"preparation": {"count": 8}, "path": {"segments": [
     {"mode": "components", "strain": [1.5, -0.75, -0.75]}]}})");

@@ -115,18 +115,22 @@ TEST(ModuliTable, NamesFileAndColumn) {
     }
     return std::string("accepted");
   };
-  std::string header, row;
+  std::string header, row, large;
   for (const std::string& name : moduli_columns()) {
     header += (header.empty() ? "" : ",") + name;
     row += (row.empty() ? "" : ",") + std::string(name == "nu" ? "0.7" : "1");
+    large += (large.empty() ? "" : ",") + std::string(name == "nu" ? "0.7" : name == "A2" ? "-1e308" : "1");
   }
   const std::string good = header + "\n" + row + "\n";
   EXPECT_EQ(said(good), "accepted");
   std::string other = good;
   EXPECT_EQ(said(other.replace(other.find("G_oct"), 5, "G_odd")),
             file.string() + ": G_oct: column is missing");
+  EXPECT_EQ(said(header + ",B_left,speed_xyz_3,Poisson_zy\n" + row + ",1,1,1\n"), "accepted");
   EXPECT_EQ(said(header + ",mu\n" + row + ",1\n"),
             file.string() + ": mu: is no column of a table of moduli (docs/formats.md lists them)");
+  EXPECT_EQ(said(header + "\n" + row + "\n" + large + "\n"),
+            file.string() + ": A2: line 3: must be in [-1000, 1000], got -1e+308");
   fs::remove(file);
 }
 

@@ -177,7 +177,7 @@ TEST(Path, RefusesTwoTargetsThatCannotBe) {
   EXPECT_EQ(refused_segment(R"({"mode": "uni", "controls": {"P": "start", "s_dev": "start"}})"),
             "p.json: segments[0].controls: has nothing to do: both controls stay as at the start");
   EXPECT_EQ(refused_segment(R"({"mode": "uni", "controls": {"P": -1, "s_dev": "start"}})"),
-            "p.json: segments[0].controls.P: must be >= 0 and <= 1000, got -1");
+            "p.json: segments[0].controls.P: must be >= 0 and <= 1 of k* = k/(2<r>), got -1");
   EXPECT_THAT(refused_segment(R"({"mode": "uni", "controls": {"P": "stat", "eps_dev": 1}})"),
               testing::HasSubstr("segments[0].controls.P: must be"));
   EXPECT_EQ(refused_segment(R"({"mode": "d2", "amount": 0.1, "stop": {"column": "P"}})"),
@@ -206,7 +206,7 @@ TEST(Path, StrainUnderStressControlIsNotKnownInAdvance) {
 
 TEST(Path, RefusesStressControlThatMeansNothing) {
   EXPECT_EQ(refused_segment(R"({"mode": "triaxial", "amount": 0.1, "stress": -0.01})"),
-            "p.json: segments[0].stress: must be > 0 and <= 1000, got -0.01");
+            "p.json: segments[0].stress: must be > 0 and <= 1 of k* = k/(2<r>), got -0.01");
   EXPECT_EQ(refused_segment(R"({"mode": "biaxial", "amount": 0.1, "stress": "hold"})"),
             "p.json: segments[0].stress: must be one of start, got \"hold\"");
   EXPECT_EQ(

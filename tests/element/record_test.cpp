@@ -55,7 +55,20 @@ TEST_F(RecordFile, RefusesWhatIsNotARecord) {
   EXPECT_EQ(refusal("nu,nu\n0.7,1\n"), "nu: line 1: column is given twice");
   EXPECT_EQ(refusal("nu\n0.7\n", {"P"}), "P: column is missing");
   EXPECT_EQ(refusal("nu,P\n0.7,0.0123"), "is cut short: its last line does not end with a newline");
+  EXPECT_EQ(refusal("nu;P\n0,7;1\n"),
+            "line 1: columns must be separated by commas (and numbers have a decimal point), got semicolons");
+  EXPECT_EQ(refusal("nu\tP\n0.7\t1\n"),
+            "line 1: columns must be separated by commas (and numbers have a decimal point), got tabs");
+}
+
+TEST_F(RecordFile, TakesWhatASpreadsheetWrites) {
   EXPECT_EQ(refusal("nu,P\r\n0.7,\r\n"), "accepted");
+  ASSERT_EQ(refusal("\xEF\xBB\xBFnu, P\r\n 0.7 ,\t0.01\r\n0.71, \r\n", {"nu", "P"}), "accepted");
+  const Record record = Record::read_csv(file_);
+  EXPECT_EQ(record.columns(), (std::vector<std::string>{"nu", "P"}));
+  EXPECT_EQ(record["nu"], (std::vector<double>{0.7, 0.71}));
+  EXPECT_EQ(record["P"][0], 0.01);
+  EXPECT_TRUE(std::isnan(record["P"][1]));
 }
 
 TEST_F(RecordFile, InfinityIsNeverWritten) {

@@ -24,11 +24,11 @@ inline std::filesystem::path thesis_file() {
 /// w = 3, Tables 2.1, 2.2, 4.1, 5.1; closure P iso, contacts d2 at moduli.nu_c.
 inline ParameterSet thesis() { return ParameterSet::load(thesis_file()); }
 
-/// With the strains of the form with memory, which the thesis has not.
+/// With the numbers of the form with memory, which the thesis has not.
 inline ParameterSet thesis_with_memory() {
   ParameterSet set = thesis();
-  set.memory->eps_c.emplace().value = 0.076;
-  set.memory->eps_r.emplace().value = 0.0123;
+  set.memory->eps_c.emplace().value = 0.042;
+  set.memory->hold.emplace().value = 0.4;
   return set;
 }
 

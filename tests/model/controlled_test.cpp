@@ -23,8 +23,8 @@ constexpr Form all_forms[] = {Form::reduced_closed, Form::reduced, Form::coupled
 ParameterSet set_of(Form form) {
   ParameterSet set = thesis();
   if (form != Form::memory) return set;
-  set.memory->eps_c.emplace().value = 0.076;
-  set.memory->eps_r.emplace().value = 0.0123;
+  set.memory->eps_c.emplace().value = 0.042;
+  set.memory->hold.emplace().value = 0.4;
   return set;
 }
 bool is_coupled(Form form) {
@@ -105,6 +105,8 @@ TEST(Controlled, EveryPairOfQuantitiesIsFollowed) {
         if (&a >= &b || (by_volume && &b < &columns[2])) continue;
         const bool tied = (by_volume && b == std::string("P")) || (&a == &columns[2] && &b == &columns[5]);
         if (!is_coupled(form) && tied) continue;  // see the next test
+        // With memory shear of either sign moves P alike: P at a volume tells how far, not which way.
+        if (form == Form::memory && by_volume && b == std::string("P")) continue;
         SCOPED_TRACE(name_of(form) + ": " + a + " and " + b);
         std::string segments = begin;
         for (const std::size_t i : {2u, 3u})

@@ -140,7 +140,7 @@ TEST(Sensitivities, OfTheFormWithMemory) {
           {"mode": "uni", "amount": -0.1}, {"mode": "uni", "amount": 0.15}]})",
        set},
       {"shear jamming", R"({"start": {"nu": 0.661}, "segments": [{"mode": "d2", "amount": 0.3},
-          {"mode": "d2", "amount": -0.06}, {"mode": "d2", "amount": -0.3}]})",
+          {"mode": "d2", "amount": -0.056}, {"mode": "d2", "amount": -0.3}]})",
        set}};
   for (const Case& c : paths) {
     SCOPED_TRACE(c.name);

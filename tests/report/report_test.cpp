@@ -206,6 +206,18 @@ TEST_F(ReportTest, ShowsTheMemoryOfTheJammingDensity) {
                                   {{"test", "sj-s1"}, {"x", {0.658, 0.66}}, {"y", {0.2, 0}}},
                                   {parameter("eps0_R", 0.16, 0.17), parameter("phi_cr", 0.662, 0.66)}));
   });
+  EXPECT_THAT(report_html(dir_), Not(HasSubstr("Packings at rest along shear")));
+  edit("fits.json", [](Json& json) {
+    json["memory"]["relaxed"] = {{"phi_J0", {0.665, 0.665, 0.665}},
+                                 {"nu", {0.655, 0.658, 0.66}},
+                                 {"eps_dev", {0.03, 0.12, 0.24}},
+                                 {"P_flow", {0, 3e-4, 1e-3}},
+                                 {"P", {0, 0, 8e-4}},
+                                 {"s_dev", {nullptr, nullptr, 0.2}},
+                                 {"C", {0, 3, 5}}};
+    json["memory"]["tapped"] = {
+        {"phi_max", {0.68, 0.82}}, {"amplitude", {0.02, 0.02}}, {"phi_J", {0.663, 0.667}}};
+  });
   edit("parameters.json", [](Json& json) {
     json["memory"]["eps0"] = {
         {"value", 0.11}, {"stderr", 0.011}, {"unit", "1"}, {"source", "fit"}, {"thesis", 0.102}};
@@ -215,6 +227,9 @@ TEST_F(ReportTest, ShowsTheMemoryOfTheJammingDensity) {
   EXPECT_THAT(html, HasSubstr("<h3>Memory of the jamming density (Eqs. 5.1 – 5.13), beside chapter 5</h3>"));
   EXPECT_THAT(html, HasSubstr("0.110 ± 0.011</span><div class=\"under\">thesis 0.102"));
   EXPECT_THAT(html, HasSubstr("φ_max = 0.82"));
+  EXPECT_THAT(html, HasSubstr("Packings at rest along shear"));
+  EXPECT_THAT(html, HasSubstr("in flow only (fragile)"));
+  EXPECT_THAT(html, HasSubstr("φ_max = 0.68 before"));
   EXPECT_THAT(html, Not(HasSubstr("NaN")));
 }
 

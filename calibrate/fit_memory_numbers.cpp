@@ -1,4 +1,4 @@
-#include "grainlaw/calibrate/fit_memory_strains.hpp"
+#include "grainlaw/calibrate/fit_memory_numbers.hpp"
 
 #include <algorithm>
 #include <string>
@@ -11,14 +11,14 @@ namespace grainlaw::calibrate {
 
 namespace {
 
-/// Of D2 cycles to 0.4 at nu = 0.685, 0.711 and 0.75 (docs/model.md, Memory).
-constexpr double usual_eps_c = 0.076, usual_eps_r = 0.0123;
+/// Of first loadings at nu = 0.67 to 0.81, and of D2 cycles to 0.4 at 0.685 to 0.75 (docs/model.md, Memory).
+constexpr double usual_eps_c = 0.042, usual_hold = 0.4;
 
 model::Parameter assumed(double value, const std::string& why) {
   model::Parameter parameter;
   parameter.value = value;
   parameter.source = "assumed";
-  parameter.note = why + "; that of the D2 cycles of data/records/base, w = 3";
+  parameter.note = why + "; that of data/records/base, w = 3";
   return parameter;
 }
 
@@ -39,7 +39,7 @@ bool is_told(const Json& account, const std::string& name) {
 
 }  // namespace
 
-void add_memory_strains(const std::filesystem::path& dir, const RecordFolder& folder,
+void add_memory_numbers(const std::filesystem::path& dir, const RecordFolder& folder,
                         model::ParameterSet& parameters) {
   if (!parameters.memory || !parameters.moduli || !parameters.shear || !parameters.isotropic.contains("d2"))
     return;
@@ -51,15 +51,15 @@ void add_memory_strains(const std::filesystem::path& dir, const RecordFolder& fo
   const bool any_reverses = std::any_of(folder.tests.begin(), folder.tests.end(), [](const TestRecord& test) {
     return test.role == Role::fit && test.mode == "d2" && reverses(test);
   });
-  if (any_reverses) options.names.push_back("memory.eps_r");
+  if (any_reverses) options.names.push_back("memory.hold");
   auto& memory = *parameters.memory;
   memory.eps_c = assumed(usual_eps_c, "no D2 test tells");
-  memory.eps_r = assumed(usual_eps_r, any_reverses ? "the D2 tests do not tell" : "no D2 test is reversed");
+  memory.hold = assumed(usual_hold, any_reverses ? "the D2 tests do not tell" : "no D2 test is reversed");
   try {
     const PolishOutput fitted = polish(dir, parameters, options);
     const auto& told = *fitted.parameters.memory;
     if (is_told(fitted.account, "memory.eps_c")) memory.eps_c = told.eps_c;
-    if (is_told(fitted.account, "memory.eps_r")) memory.eps_r = told.eps_r;
+    if (is_told(fitted.account, "memory.hold")) memory.hold = told.hold;
   } catch (const Error& error) {  // no D2 test that could be followed: the other fits stand
     memory.eps_c = assumed(usual_eps_c, std::string("no D2 test tells (") + error.what() + ")");
   }

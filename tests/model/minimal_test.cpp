@@ -1,0 +1,142 @@
+// The minimal form (section 5.H): its jamming density against Eqs. 5.1, 5.3 and 5.13 as written, everything
+// else as functions of nu/phi_J, and what it refuses.
+#include "grainlaw/model/forms/minimal.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "checks.hpp"
+#include "grainlaw/model/predict_minimal.hpp"
+
+namespace grainlaw::model {
+namespace {
+
+using testing::HasSubstr;
+
+/// Tables 5.1 and 5.2, with the phi_cr of our packings.
+ParameterSet near_jamming(double phi_cr = 0.6621) {
+  auto set = ParameterSet::load(std::filesystem::path(GRAINLAW_DATA_DIR) / "thesis" / "near-jamming.json");
+  set.memory->phi_cr.emplace().value = phi_cr;
+  return set;
+}
+
+Prediction run(const std::string& path, int rows = 40, double phi_cr = 0.6621) {
+  return predict_minimal(near_jamming(phi_cr), path_of(path), rows);
+}
+
+const char* const shear_cycle =
+    R"({"start": {"nu": 0.6593, "phi_J": 0.6652}, "segments": [{"mode": "d2", "controls": {"eps_dev": 0.28}},
+      {"mode": "d2", "controls": {"eps_dev": -0.16}}, {"mode": "d2", "controls": {"eps_dev": 0.28}}]})";
+
+TEST(Minimal, ShearTakesTheJammingDensityByEquations5_3And5_13) {
+  const Record record = run(shear_cycle).record;
+  for (std::size_t row = 0; row < record.rows(); ++row) {
+    const double e = record["eps_dev"][row], leg = record["segment"][row];
+    if (row > 0 && leg > record["segment"][row - 1]) continue;
+    const double strain = leg == 0 ? e : leg == 1 ? 0.28 - e : e + 0.16;
+    const double expected = leg == 0 ? 0.6567 + (0.6652 - 0.6567) * std::exp(-std::pow(strain / 0.102, 1.37))
+                                     : 0.6567 + (0.6621 - 0.6567) * std::exp(-std::pow(strain / 0.17, 1.37));
+    EXPECT_NEAR(record["phi_J"][row], expected, 1e-12) << e;
+    const bool jammed = 0.6593 > expected;
+    EXPECT_EQ(record["P"][row] > 0, jammed);
+    if (!jammed) {
+      for (const char* column : {"P", "sigma_dev", "F_dev", "C", "f_NR"}) EXPECT_EQ(record[column][row], 0);
+    }
+  }
+}
+
+TEST(Minimal, TheStrainToJamIsThatOfTheThesis) {
+  for (const auto& [nu, strain] : {std::pair{0.6584, 0.1444}, {0.6593, 0.1154}, {0.66, 0.0980}}) {
+    const Record record = predict_minimal(near_jamming(),
+                                          path_of(R"({"start": {"nu": )" + to_text(nu) +
+                                                  R"(, "phi_J": 0.6652}, "segments": [
+        {"mode": "d2", "amount": 0.2}]})"),
+                                          20000)
+                              .record;
+    std::size_t row = 0;
+    while (record["P"][row] == 0) ++row;
+    EXPECT_NEAR(record["eps_dev"][row], strain, 1e-4);
+  }
+}
+
+TEST(Minimal, EverythingElseFollowsFromTheDistanceToJamming) {
+  const Record record = run(R"({"start": {"nu": 0.7, "phi_J": 0.664}, "segments": [
+      {"mode": "d2", "amount": 2}]})")
+                            .record;
+  const double x = 0.7 / 0.6567 - 1, C_star = 6 + 8.1 * std::pow(x, 0.58),
+               f_NR = 1 - 0.16 * std::exp(-15 * x);
+  const std::size_t end = record.rows() - 1;
+  EXPECT_NEAR(record["phi_J"][end], 0.6567, 1e-12);
+  EXPECT_NEAR(record["C_star"][end], C_star, 1e-9);
+  EXPECT_NEAR(record["f_NR"][end], f_NR, 1e-9);
+  EXPECT_NEAR(record["P"][end], 0.042 * (1 + x) * C_star * f_NR * std::log(1 + x), 1e-9);
+  EXPECT_NEAR(record["s_dev"][end], 0.12 + 0.091 * std::exp(-7.9 * x), 1e-9);
+  EXPECT_NEAR(record["F_dev"][end], 0.17 * std::exp(-5.3 * x), 1e-9);
+}
+
+TEST(Minimal, CyclesOfCompressionFollowEquation5_1) {
+  const Prediction p = run(R"({"start": {"nu": 0.64}, "segments": [{"repeat": 300, "segments": [
+      {"mode": "iso", "controls": {"nu": 0.73}}, {"mode": "iso", "controls": {"nu": 0.64}}]}]})",
+                           1);
+  const auto over = near_jamming().memory->over_compression();
+  const auto& phi_J = p.record["phi_J"];
+  for (const std::size_t M : {1, 2, 10, 300})
+    EXPECT_NEAR(phi_J[2 * M - 1], jamming_density_after(over, 0.73, static_cast<double>(M)), 1e-6);
+  EXPECT_EQ(p.status.code, Status::Code::unjammed);
+}
+
+TEST(Minimal, AboveTheCriticalDensityAReversalLeavesItAlone) {
+  const char* path = R"({"start": {"nu": 0.663, "phi_J": 0.6652}, "segments": [
+      {"mode": "d2", "amount": 0.3}, {"mode": "d2", "amount": -0.3}]})";
+  const Record above = run(path).record;
+  for (std::size_t row = 41; row < above.rows(); ++row) EXPECT_GT(above["P"][row], 0);
+  const Record below = run(path, 40, 0.6645).record;
+  EXPECT_EQ(below["P"][42], 0);
+  EXPECT_GT(below["P"].back(), 0);
+}
+
+TEST(Minimal, OneStepIsAsGoodAsMany) {
+  const Minimal law{minimal_laws(near_jamming())};
+  MinimalState start;
+  start.point.nu = 0.65;
+  start.point.history = {0.6567, 0.65, 0.65};
+  law.settle(start);
+  const MinimalState once = law.after(start, 0.12, 0.1);
+  MinimalState many = start;
+  for (int i = 0; i < 1000; ++i) many = law.after(many, 0.12e-3, 0.1e-3);
+  EXPECT_NEAR(once.point.P, many.point.P, 1e-12);
+  EXPECT_NEAR(once.point.sigma_dev, many.point.sigma_dev, 1e-12);
+  EXPECT_NEAR(once.point.phi_J, many.point.phi_J, 1e-12);
+}
+
+TEST(Minimal, BelowTheShearJammingDensityNothingJams) {
+  for (const double nu : {0.60, 0.6567}) {
+    const Prediction p = run(R"({"start": {"nu": )" + to_text(nu) +
+                             R"(, "phi_J": 0.6652}, "segments": [{"mode": "d2", "amount": 20},
+        {"mode": "d2", "amount": -20}]})");
+    for (const double P : p.record["P"]) EXPECT_EQ(P, 0);
+  }
+}
+
+TEST(Minimal, WhatItCannotTakeIsRefused) {
+  const auto refused = [](const std::string& path) { return refusal([&] { run(path); }); };
+  const std::string shear = R"("segments": [{"mode": "d2", "amount": 0.1}]})";
+  EXPECT_THAT(refused(R"({"start": {}, )" + shear), HasSubstr("start.nu: is missing"));
+  EXPECT_THAT(refused(R"({"start": {"nu": 0.7, "F_dev": 0.1}, )" + shear), HasSubstr("start.F_dev"));
+  EXPECT_THAT(refused(R"({"start": {"nu": 0.7, "phi_max": 0.69}, )" + shear),
+              HasSubstr("phi_max: must be >= start.nu"));
+  EXPECT_THAT(refused(R"({"start": {"nu": 0.7}, "segments": [{"mode": "d2", "amount": 0.1},
+      {"mode": "uni", "amount": 0.1}]})"),
+              HasSubstr("not coaxial"));
+  EXPECT_THAT(refused(R"({"start": {"nu": 0.7}, "segments": [{"mode": "triaxial", "amount": 0.1}]})"),
+              HasSubstr("must prescribe strains"));
+  ParameterSet set = near_jamming();
+  set.memory.reset();
+  EXPECT_THAT(refusal([&] { minimal_laws(set); }), HasSubstr("the minimal form"));
+  set = near_jamming();
+  set.memory->eps0.value = std::nan("");
+  EXPECT_THAT(refusal([&] { minimal_laws(set); }), HasSubstr("memory.eps0: must be a finite number"));
+}
+
+}  // namespace
+}  // namespace grainlaw::model
