@@ -85,7 +85,7 @@ class Terms {
  private:
   template <class Update>
   void increments(const std::string& name, const State& start, Update update) {
-    constexpr int count = 4000;
+    constexpr int count = 500;
     const double ns = fastest(seconds_, [&] {
       State state = start;
       for (int i = 0; i < count; ++i) update(state);

@@ -80,7 +80,8 @@ TEST(Energy, IsChosenByNameAndNeedsItsNumbers) {
   EXPECT_EQ(name_of(choice_of("coupled+energy")), "coupled+energy");
   EXPECT_FALSE(choice_of("coupled").terms.energy);
   EXPECT_EQ(refusal([] { choice_of("coupled+enrgy"); }),
-            "form: coupled takes the terms axial, energy, volumetric, got \"coupled+enrgy\"");
+            "form: coupled takes the terms axial, energy, volumetric, constant_F_v, moduli_table, got "
+            "\"coupled+enrgy\"");
   EXPECT_EQ(refusal([] { choice_of("reduced_closed+energy"); }),
             "form: reduced_closed takes the terms axial, got \"reduced_closed+energy\"");
   EXPECT_THAT(refusal([] { laws_of(thesis(), choice_of("coupled+energy")); }),

@@ -174,14 +174,13 @@ TEST(EveryIntegrator, AtAndAroundTheJammingDensity) {
 
 TEST(EveryIntegrator, ReversalInEveryIncrement) {
   everywhere(0.711, [](Walked& point, Form form) {
-    const bool all = point.laws().terms == Terms{} && (form == Form::coupled || form == Form::memory);
+    const int times = form == Form::coupled && point.laws().terms == Terms{} ? 100'000 : 3000;
     const double P = point.state().P;
-    for (int i = 0; i < (all ? 100'000 : 1000); ++i)
-      ASSERT_FALSE(point.walk(0, i % 2 == 0 ? 1e-5 : -1e-5).failed());
+    for (int i = 0; i < times; ++i) ASSERT_FALSE(point.walk(0, i % 2 == 0 ? 1e-5 : -1e-5).failed());
     point.expect(0, 1e-5);
     EXPECT_LT(std::abs(point.state().s_dev()), point.s_max());
     EXPECT_LT(std::abs(point.state().F_dev), point.F_max());
-    EXPECT_NEAR(point.state().P / P, 1, form == Form::memory ? 0.3 : 1e-3);
+    EXPECT_NEAR(point.state().P / P, 1, form == Form::memory ? 0.1 : 1e-3);
     EXPECT_NEAR(point.state().eps_dev, 1e-5, 1e-10);
   });
 }
