@@ -19,6 +19,13 @@ StartState started(const std::string& values, Form form = Form::coupled) {
   return start_of(thesis(), start(values), form);
 }
 
+/// From 0.7 under a pressure that a file may not ask for.
+StartState pressed(const ParameterSet& set, double P, Form form = Form::coupled) {
+  Path path = start(R"("nu": 0.7)");
+  path.start.P = P;
+  return start_of(set, path, form);
+}
+
 std::string from(const StartState& state, const char* key) {
   return state.echo[key]["from"].get<std::string>();
 }
@@ -111,11 +118,11 @@ TEST(Start, ReducedFormsFindTheJammingDensityFromPressure) {
   EXPECT_THAT(from(s, "phi_J"), HasSubstr("start.P"));
   EXPECT_THAT(refused(R"("nu": 0.711, "P": 0.025, "phi_J": 0.66)", Form::reduced),
               HasSubstr("start.phi_J: redundant"));
-  EXPECT_THAT(refused(R"("nu": 0.7, "P": 3)", Form::reduced), HasSubstr("start.P: 3 is more than"));
-  EXPECT_THAT(refused(R"("nu": 0.7, "P": 3)", Form::reduced),
-              HasSubstr("with phi_J down to 0.257516, at most "));
+  const std::string too_much = refusal([] { pressed(thesis(), 3, Form::reduced); });
+  EXPECT_THAT(too_much, HasSubstr("start.P: 3 is more than"));
+  EXPECT_THAT(too_much, HasSubstr("with phi_J down to 0.257516, at most "));
   // The coupled form only starts there.
-  const StartState beyond = started(R"("nu": 0.7, "P": 3)");
+  const StartState beyond = pressed(thesis(), 3);
   EXPECT_EQ(beyond.state.P, 3);
   EXPECT_TRUE(beyond.echo["phi_J"]["value"].is_null());
 }
@@ -123,12 +130,9 @@ TEST(Start, ReducedFormsFindTheJammingDensityFromPressure) {
 TEST(Start, PressureMayBeUpToTheMaximumOfItsLaw) {
   ParameterSet set = thesis();
   set.isotropic.at("iso").gamma_p.value = 1;
-  const auto start_with = [&](double P) {
-    return start_of(set, start(R"("nu": 0.7, "P": )" + to_text(P)), Form::reduced).state;
-  };
   EXPECT_GT(pressure(laws_of(set, Form::reduced).pressure, 0.6649 * std::exp(0.6)), 0.2);
-  EXPECT_NEAR(start_with(0.2).P, 0.2, 1e-12);
-  EXPECT_THAT(refusal([&] { start_with(3); }),
+  EXPECT_NEAR(pressed(set, 0.2, Form::reduced).state.P, 0.2, 1e-12);
+  EXPECT_THAT(refusal([&] { pressed(set, 3, Form::reduced); }),
               HasSubstr("start.P: 3 is above the maximum of the pressure law"));
 }
 
