@@ -119,7 +119,7 @@ TEST_F(Predict, FollowsATableOfStrains) {
   EXPECT_DOUBLE_EQ(predict({"--nu", "0.7", "--P", "1e6kPa"}, "bare.csv")["P"][0], 0.02);
   EXPECT_TRUE(
       refuses(run({"predict", "data/thesis/parameters.json", "bare.csv", "--nu", "0.7", "--P", "50"}),
-              {"--P: must be a number between 0 and 1, over k* = 50000000 kPa, or in kPa with that unit"}));
+              {"--P: must be a number between 0 and 1, over k* = 5e+07 kPa, or in kPa with that unit"}));
   EXPECT_TRUE(
       refuses(run({"predict", "data/thesis/parameters.json", "bare.csv"}), {"bare.csv: nu: is missing"}));
   write("bad.csv", "eps_vol,eps_dev\n0,0\n0,\n");

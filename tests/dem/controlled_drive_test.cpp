@@ -129,15 +129,15 @@ TEST_F(ControlledDrive, RowsDoNotChangeTheRun) {
 }
 
 TEST_F(ControlledDrive, SaysWhatItCannotReachAndKeepsTheRest) {
-  // Twenty times k* is more than grains at nu = 1 bear.
+  // k* is more than grains at nu = 1 bear.
   const Record r = run(R"({"mode": "d2", "amount": 0.01, "rate": 1e-3},
-                          {"mode": "isotropic_stress", "P": 20, "rate": 1e-2}, {"mode": "relax"})",
+                          {"mode": "isotropic_stress", "P": 1, "rate": 1e-2}, {"mode": "relax"})",
                        R"("rows": 4)");
   EXPECT_EQ(r.rows(), 5u);
   EXPECT_THAT(summary.cut_short, testing::StartsWith("segment 1 (isotropic_stress): s"));
-  EXPECT_THAT(summary.cut_short, testing::HasSubstr(" cannot be kept at 20 to 0.001: it is "));
+  EXPECT_THAT(summary.cut_short, testing::HasSubstr(" cannot be kept at 1 to 0.001: it is "));
   EXPECT_EQ(summary.warnings.back(), summary.cut_short);
-  EXPECT_THAT(read_file(dir / "a" / "provenance.json"), testing::HasSubstr("cannot be kept at 20"));
+  EXPECT_THAT(read_file(dir / "a" / "provenance.json"), testing::HasSubstr("cannot be kept at 1 to"));
   run(R"({"mode": "constant_p", "P": 0.05, "amount": 0.01, "rate": 1e-4, "servo": {"rate": 1e-6, "wait": 20}})",
       R"("rows": 4)", "b");
   EXPECT_THAT(summary.cut_short, testing::HasSubstr("P cannot be kept at 0.05"));
