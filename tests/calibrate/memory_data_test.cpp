@@ -103,7 +103,7 @@ TEST(MemoryData, TheSystematicErrorIsLargerThanTheScatter) {
 
 /// The same three packings at the same rate, once prepared with a rest and once without: a packing has no
 /// phi_J of its own to better than this.
-TEST(MemoryData, APackingRepeatsItselfToAThousandth) {
+TEST(MemoryData, APackingRepeatsItselfNoBetterThanOthersDo) {
   const auto rates = read_over_compression(folder / "over_compression-rates.csv");
   const auto from_rest = cycles();
   double most = 0;
