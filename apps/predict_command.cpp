@@ -74,9 +74,23 @@ void echo_start(Terminal& terminal, const model::Prediction& prediction) {
 /// The form that is evaluated, not integrated.
 bool is_minimal(const Arguments& arguments) { return arguments.form == model::minimal_name; }
 
+constexpr const char* all_forms = "reduced_closed, reduced, coupled, memory, coupled_3_14 or minimal";
+
+/// The form that is integrated. Throws Error naming all of predict's forms, minimal among them.
+model::Choice choice_of(const std::string& form) {
+  const std::string name = form.substr(0, form.find('+'));
+  if (name == model::minimal_name) throw Error("", "--form", "minimal takes no terms, got \"" + form + "\"");
+  try {
+    model::form_of(name);
+  } catch (const Error&) {
+    throw Error("", "--form", fmt::format("must be one of {}, got \"{}\"", all_forms, form));
+  }
+  return model::choice_of(form);
+}
+
 model::PredictOptions read_options(const Arguments& arguments) {
   model::PredictOptions options;
-  const model::Choice choice = is_minimal(arguments) ? model::Choice{} : model::choice_of(arguments.form);
+  const model::Choice choice = is_minimal(arguments) ? model::Choice{} : choice_of(arguments.form);
   options.form = choice.form;
   options.terms = choice.terms;
   options.method = model::method_of(arguments.method);
@@ -242,10 +256,7 @@ Action add_predict(CLI::App& program) {
       ->required();
   command->add_option("-o,--output", arguments->output, "table to write (default: standard output)")
       ->type_name("FILE.csv");
-  command
-      ->add_option(
-          "--form", arguments->form,
-          "reduced_closed, reduced, coupled, memory, coupled_3_14 or minimal; with terms: coupled+energy")
+  command->add_option("--form", arguments->form, std::string(all_forms) + "; with terms: coupled+energy")
       ->type_name("FORM")
       ->capture_default_str();
   command->add_option("--rtol", arguments->rtol, "relative tolerance of the integration (default: 1e-8)")

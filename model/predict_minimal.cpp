@@ -121,6 +121,8 @@ Prediction predict_minimal(const ParameterSet& parameters, const Path& path,
   const auto legs = legs_of(path, state.point.nu);
   check_samples(samples, legs.size());
   Prediction prediction{Record(prediction_columns()), start.told(), {}, {}};
+  const bool has_phi_cr = parameters.need_memory("minimal").phi_cr.has_value();
+  bool reverses = false;
   auto next = samples.begin();
   for (std::size_t i = 0; i < legs.size(); ++i) {
     const double v = legs[i].eps_vol[1] - legs[i].eps_vol[0], e = legs[i].eps_dev[1] - legs[i].eps_dev[0];
@@ -130,10 +132,12 @@ Prediction predict_minimal(const ParameterSet& parameters, const Path& path,
       prediction.record.append(row_of(contacts_of(law, there), there.point, i));
     }
     if (v != 0 || e != 0) state = law.after(state, v, e);
+    reverses = reverses || state.reversed;
   }
-  if (!parameters.need_memory("minimal").phi_cr)
+  if (!has_phi_cr && reverses)
     prediction.warnings.push_back(
-        "memory.phi_cr is missing: a reversal of shear takes phi_J back to what over-compression has left");
+        "memory.phi_cr is missing: a reversal of shear, at any nu, takes phi_J back to what over-compression "
+        "has left");
   prediction.end = state.point;
   if (!state.point.jammed)
     prediction.status = {Status::Code::unjammed,

@@ -14,8 +14,8 @@ namespace grainlaw::model {
 /// Its name beside those of the forms that are integrated.
 inline constexpr const char* minimal_name = "minimal";
 
-/// Throws Error naming the row or group that the set lacks. Without memory.phi_cr it is 1: every reversal
-/// takes phi_J back to what over-compression has left.
+/// Throws Error naming the row or group that the set lacks. Without memory.phi_cr it is 1: every reversal,
+/// at any nu, takes phi_J back to what over-compression has left.
 MinimalLaws minimal_laws(const ParameterSet& parameters);
 
 /// As predict(): one row for the start, then `rows_per_leg` per leg. Throws Error for a path that is not

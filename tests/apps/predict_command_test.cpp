@@ -182,6 +182,12 @@ TEST_F(Predict, TheMinimalFormIsEvaluated) {
   EXPECT_GT(record["P"][11], 0);
   EXPECT_NEAR(record["s_dev"].back(), 0.21, 0.01);
   EXPECT_THAT(last.err, HasSubstr("memory.phi_cr is missing"));
+  predict({"--form", "minimal"}, "data/paths/uni.json", set);  // no reversal, no need
+  EXPECT_THAT(last.err, testing::Not(HasSubstr("phi_cr")));
+  EXPECT_TRUE(refuses(run({"predict", set, "data/paths/uni.json", "--form", "minimall"}),
+                      {"--form: must be one of", "coupled_3_14 or minimal", "minimall"}));
+  EXPECT_TRUE(refuses(run({"predict", set, "data/paths/uni.json", "--form", "minimal+axial"}),
+                      {"--form: minimal takes no terms"}));
   EXPECT_TRUE(refuses(
       run({"predict", set, "data/paths/shear-jamming.json", "--form", "minimal", "--envelope", "1e-4"}),
       {"--form: minimal has no rates"}));

@@ -75,7 +75,8 @@ TEST(BaseCampaign, Table2_2CellByCell) {
   EXPECT_EQ(compare_with_thesis("shear.beta_F"), 2);
 }
 
-/// Relative L2 error of P along the cycle of a packing, sheared to +-0.4 and never read by a fit.
+/// Relative L2 error of P along the cycle of a packing, sheared to +-0.4: read by no fit here, but
+/// memory.hold is from these cycles.
 double error_on_cycle(const std::string& nu, int seed, model::Form form) {
   const std::string dir =
       GRAINLAW_DATA_DIR "/records/base/records/d2-cycle-" + nu + "-s" + std::to_string(seed);

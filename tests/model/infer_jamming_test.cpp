@@ -80,6 +80,18 @@ TEST(InferJamming, AlongARecordWithErrors) {
   EXPECT_TRUE(std::isnan(out["phi_J_contacts_error"][1]));  // p0 is no matter of the contacts
 }
 
+/// Grains that touch in passing press, too: with fewer contacts than balance needs there is nothing to infer.
+TEST(InferJamming, PressureOfTooFewContactsSaysNothing) {
+  Record record({"nu", "P", "C", "C_star", "f_NR"});
+  record.append({0.66, 1e-3, 5, 5.9, 0.85});
+  record.append({0.66, 1e-3, 5.2, 6.1, 0.85});
+  const Record out = infer_jamming_density(record, table_5_1());
+  for (const char* name : {"phi_J", "phi_J_pressure_alone"}) {
+    EXPECT_TRUE(std::isnan(out[name][0])) << name;
+    EXPECT_GT(out[name][1], 0.6) << name;
+  }
+}
+
 TEST(InferJamming, PressureAloneIsEnough) {
   Record record({"nu", "P"});
   record.append({0.7, 0.02});

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Tables 5.1 and 5.2, with the phi_cr of our packings.
+/// Tables 5.1 and 5.2, with a phi_cr.
 ParameterSet near_jamming(double phi_cr = 0.6621) {
   auto set = ParameterSet::load(std::filesystem::path(GRAINLAW_DATA_DIR) / "thesis" / "near-jamming.json");
   set.memory->phi_cr.emplace().value = phi_cr;
@@ -93,6 +93,30 @@ TEST(Minimal, AboveTheCriticalDensityAReversalLeavesItAlone) {
   const Record below = run(path, 40, 0.6645).record;
   EXPECT_EQ(below["P"][42], 0);
   EXPECT_GT(below["P"].back(), 0);
+}
+
+TEST(Minimal, StressRatioAndFabricGoOnFromWhereAReversalFoundThem) {
+  const Record record = run(R"({"start": {"nu": 0.7, "phi_J": 0.664}, "segments": [
+      {"mode": "d2", "amount": 2}, {"mode": "d2", "amount": -1e-6}]})",
+                            1)
+                            .record;
+  for (const char* column : {"s_dev", "F_dev"}) {
+    EXPECT_GT(record[column][1], 0.1) << column;
+    EXPECT_NEAR(record[column][2], record[column][1], 1e-4) << column;
+  }
+}
+
+/// The second column of Table 5.1, however little Eq. 5.13 has forgotten.
+TEST(Minimal, AfterAReversalThatUnjamsContactsAreThoseOfShear) {
+  const Record record = run(shear_cycle).record;
+  std::size_t jammed = 0;
+  for (std::size_t row = 0; row < record.rows(); ++row) {
+    if (record["segment"][row] != 1 || record["P"][row] == 0 || record["eps_dev"][row] > 0.2799) continue;
+    const double x = 0.6593 / record["phi_J"][row] - 1;
+    EXPECT_NEAR(record["C_star"][row], 6 + 8.1 * std::pow(x, 0.58), 1e-9);
+    ++jammed;
+  }
+  EXPECT_GT(jammed, 10u);
 }
 
 TEST(Minimal, OneStepIsAsGoodAsMany) {
