@@ -150,7 +150,10 @@ int main(int count, char** arguments) try {
   print("linear", moduli_of(response.stress, d2), material.stress_unit());
   print("dynamic", {volume.of_pressure, shear.of_pressure, volume.of_deviator, shear.of_deviator}, 1);
   const double then = processor_seconds();
-  std::printf("difference %.2e\n", error_at(packing, response.stress, 1e-7));
+  const Stiffness differences = differences_at(packing, 1e-7);
+  const Distance all = distance(differences, response.stress);
+  std::printf("difference %.2e\ndifference_of_each %.2e\nsize_there %.2e\n", all.of_largest, all.of_each,
+              all.there);
   std::printf("difference_seconds %.2f\n", processor_seconds() - then);
   for (const double sign : {1.0, -1.0}) {
     const Probe probe = dem::probe(packing, d2, sign * amplitude);
