@@ -10,9 +10,6 @@
 namespace grainlaw::calibrate {
 namespace {
 
-/// Largest net force over the mean contact force of a state in balance: moduli err by about as much.
-constexpr double largest_residual = 1e-5;
-
 /// NaN where the table has no such column.
 double field(const Record& table, const char* column, std::size_t row) {
   return table.has(column) ? table[column][row] : std::nan("");
@@ -85,7 +82,7 @@ ModuliSeries moduli_states(const Record& table, const std::string& test, const s
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const bool elsewhere = segment && table["segment"][row] != static_cast<double>(*segment);
     if (elsewhere || (linear && amplitude[row] != 0)) continue;
-    if (!has_moduli(table, row) || table["residual"][row] > largest_residual)
+    if (!has_moduli(table, row) || table["residual"][row] > largest_moduli_residual)
       refuse(table, row, count);
     else if (linear && table["unstable"][row] > 0)
       ++count.unstable;
