@@ -71,30 +71,31 @@ void echo_start(Terminal& terminal, const model::Prediction& prediction) {
   for (const auto& warning : prediction.warnings) terminal.warn("warning: " + warning);
 }
 
+constexpr const char* form_names = "reduced_closed, reduced, coupled, memory, coupled_3_14 or minimal";
+
 /// The form that is evaluated, not integrated.
 bool is_minimal(const Arguments& arguments) { return arguments.form == model::minimal_name; }
 
-constexpr const char* all_forms = "reduced_closed, reduced, coupled, memory, coupled_3_14 or minimal";
-
-/// The form that is integrated. Throws Error naming all of predict's forms, minimal among them.
-model::Choice choice_of(const std::string& form) {
-  const std::string name = form.substr(0, form.find('+'));
-  if (name == model::minimal_name) throw Error("", "--form", "minimal takes no terms, got \"" + form + "\"");
+/// A form that is integrated, with its terms.
+model::Choice read_form(const std::string& text) {
+  const std::string name = text.substr(0, text.find('+'));
+  if (name == model::minimal_name) throw Error("", "--form", "minimal takes no terms, got \"" + text + "\"");
   try {
     model::form_of(name);
   } catch (const Error&) {
-    throw Error("", "--form", fmt::format("must be one of {}, got \"{}\"", all_forms, form));
+    throw Error("", "--form", std::string("must be one of ") + form_names + ", got \"" + text + "\"");
   }
-  return model::choice_of(form);
+  return model::choice_of(text);
 }
 
 model::PredictOptions read_options(const Arguments& arguments) {
   model::PredictOptions options;
-  const model::Choice choice = is_minimal(arguments) ? model::Choice{} : choice_of(arguments.form);
+  const model::Choice choice = is_minimal(arguments) ? model::Choice{} : read_form(arguments.form);
   options.form = choice.form;
   options.terms = choice.terms;
   options.method = model::method_of(arguments.method);
-  if (!arguments.rtol.empty()) options.rtol = read_number("--rtol", arguments.rtol, above_up_to(0, 0.1));
+  // Below 1e-12 rounding is more than what is asked.
+  if (!arguments.rtol.empty()) options.rtol = read_number("--rtol", arguments.rtol, between(1e-12, 0.1));
   if (!arguments.rows.empty())
     options.rows_per_leg = static_cast<int>(read_whole_number("--rows", arguments.rows, 1, 100'000));
   return options;
@@ -256,7 +257,7 @@ Action add_predict(CLI::App& program) {
       ->required();
   command->add_option("-o,--output", arguments->output, "table to write (default: standard output)")
       ->type_name("FILE.csv");
-  command->add_option("--form", arguments->form, std::string(all_forms) + "; with terms: coupled+energy")
+  command->add_option("--form", arguments->form, std::string(form_names) + "; with terms: coupled+energy")
       ->type_name("FORM")
       ->capture_default_str();
   command->add_option("--rtol", arguments->rtol, "relative tolerance of the integration (default: 1e-8)")

@@ -18,8 +18,11 @@ namespace fs = std::filesystem;
 /// without a unit is one of kPa.
 double read_pressure(const std::string& text, double unit_kPa) {
   constexpr std::string_view kPa = "kPa";
-  if (text.ends_with(kPa))
-    return read_number("--P", text.substr(0, text.size() - kPa.size()), between(0, unit_kPa)) / unit_kPa;
+  if (text.ends_with(kPa)) {
+    const std::string number = text.substr(0, text.size() - kPa.size());
+    return read_number("--P", number.substr(0, number.find_last_not_of(' ') + 1), between(0, unit_kPa)) /
+           unit_kPa;
+  }
   try {
     return read_number("--P", text, between(0, 1));
   } catch (const Error&) {
@@ -29,11 +32,29 @@ double read_pressure(const std::string& text, double unit_kPa) {
   }
 }
 
+/// The pressure of the first row of a table that has it in kPa, as predict --si writes it, over k*.
+std::optional<double> pressure_in_kPa(const Record& table, const std::string& file, bool by_option,
+                                      double unit_kPa) {
+  const std::string column = "P_kPa";
+  if (!table.has(column) || std::isnan(table[column].front())) return std::nullopt;
+  const double P = table[column].front();
+  const bool twice = table.has("P") && !std::isnan(table["P"].front());
+  if (by_option || twice)
+    throw Error(file, column,
+                std::string("line 2: says the start already; leave out ") + (twice ? "column P" : "--P"));
+  const Range range = between(0, unit_kPa);
+  if (!range.contains(P))
+    throw Error(file, column, "line 2: must be " + range.text() + ", got " + to_text(P));
+  return P / unit_kPa;
+}
+
 Followed read_strains(const fs::path& file, const std::string& nu, const std::string& P, double unit_kPa) {
   std::optional<double> start_nu, start_P;
   if (!nu.empty()) start_nu = read_number("--nu", nu, inside(0, 1));
   if (!P.empty()) start_P = read_pressure(P, unit_kPa);
   const Record table = Record::read_csv(file, {"eps_vol", "eps_dev"});
+  if (const auto in_kPa = pressure_in_kPa(table, file.string(), start_P.has_value(), unit_kPa))
+    start_P = in_kPa;
   auto strains = model::strain_path(table, file.string(), start_nu, start_P);
   return {strains.path, std::nullopt, std::move(strains)};
 }

@@ -58,9 +58,9 @@ std::vector<std::string> columns(const Plan& plan) {
 }
 
 Plan plan_of(const Arguments& arguments) {
-  const double residual = arguments.residual.empty()
-                              ? dem::ProbedPacking::balance
-                              : read_number("--residual", arguments.residual, between(1e-13, 0.1));
+  const double residual = arguments.residual.empty() ? dem::ProbedPacking::balance
+                                                     : read_number("--residual", arguments.residual,
+                                                                   between(1e-13, largest_moduli_residual));
   Plan plan{axis_of(arguments.axis), {}, residual, arguments.undo, ElasticColumns(arguments.also)};
   if (plan.undo && arguments.amplitudes.empty())
     throw Error("", "--undo", "must come with a strain to undo: --amplitude");

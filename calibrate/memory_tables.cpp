@@ -73,6 +73,15 @@ std::vector<double> rounded(std::vector<double> row) {
   return row;
 }
 
+/// What both tables of unloadings say of one.
+void read_densities(const Record& table, std::size_t i, CycleDensity& c) {
+  c.from_P = {table["phi_J"][i], table["phi_J_error"][i]};
+  c.from_C_star = {table["phi_J_contacts"][i], table["phi_J_contacts_error"][i]};
+  c.from_f_NR = {table["phi_J_nonrattlers"][i], table["phi_J_nonrattlers_error"][i]};
+  c.p0 = table["p0"][i];
+  c.rows = static_cast<std::size_t>(table["rows"][i]);
+}
+
 std::string record_of(const std::string& kind, double phi, const std::string& seed) {
   return kind + "-" + to_text(phi) + "-s" + seed;
 }
@@ -126,11 +135,7 @@ std::vector<CycleDensity> read_over_compression(const std::filesystem::path& fil
     c.phi_max = table["phi_max"][i];
     c.test = record_of("over-compression", c.phi_max, c.group);
     c.M = table["M"][i];
-    c.from_P = {table["phi_J"][i], table["phi_J_error"][i]};
-    c.from_C_star = {table["phi_J_contacts"][i], table["phi_J_contacts_error"][i]};
-    c.from_f_NR = {table["phi_J_nonrattlers"][i], table["phi_J_nonrattlers_error"][i]};
-    c.p0 = table["p0"][i];
-    c.rows = static_cast<std::size_t>(table["rows"][i]);
+    read_densities(table, i, c);
     cycles.push_back(c);
   }
   return cycles;
@@ -190,11 +195,7 @@ std::vector<TappedDensity> read_tapped(const std::filesystem::path& file) {
     c.phi_max = table["nu"][i];
     c.test = record_of("tapped-" + to_text(table["amplitude"][i]), table["strain"][i], c.group);
     c.M = 1;
-    c.from_P = {table["phi_J"][i], table["phi_J_error"][i]};
-    c.from_C_star = {table["phi_J_contacts"][i], table["phi_J_contacts_error"][i]};
-    c.from_f_NR = {table["phi_J_nonrattlers"][i], table["phi_J_nonrattlers_error"][i]};
-    c.p0 = table["p0"][i];
-    c.rows = static_cast<std::size_t>(table["rows"][i]);
+    read_densities(table, i, c);
     t.phi_max = table["phi_max"][i];
     t.amplitude = table["amplitude"][i];
     t.strain = table["strain"][i];

@@ -14,7 +14,7 @@ namespace grainlaw::calibrate {
 /// What a table of moduli gave.
 struct ModuliCount {
   std::size_t taken = 0;
-  std::size_t refused = 0;   ///< packings without moduli: unjammed, below isostatic, not in balance
+  std::size_t refused = 0;   ///< packings without moduli: unjammed, below isostatic, not in balance (1e-5)
   std::size_t unstable = 0;  ///< of linear response, in a balance that is not stable
   /// Whose energy has no minimum over strains of the box (the 6x6 is not positive definite): about to
   /// rearrange, so that moduli are those of strains without a size.

@@ -9,25 +9,21 @@
 #include <type_traits>
 #include <utility>
 
-#include "grainlaw/dem/drive.hpp"
+#include "grainlaw/dem/dynamics.hpp"
 #include "grainlaw/dem/forces.hpp"
 #include "grainlaw/dem/moduli_cost.hpp"
 #include "grainlaw/dem/observe/observers.hpp"
-#include "grainlaw/dem/preparation.hpp"
 #include "grainlaw/dem/random.hpp"
 #include "grainlaw/dem/row_writer.hpp"
 #include "grainlaw/dem/size_distribution.hpp"
 #include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/trial_packing.hpp"
 
 namespace grainlaw::dem {
 
 namespace {
 
-constexpr double trial_step = 0.1;              // over t_c, while trial packings are made
-constexpr std::size_t whole_trial = 1500;       // packings of up to so many grains are tried as they are
-constexpr std::size_t base_grains = 1000;       // larger ones are made of copies of one of about this size
-constexpr std::size_t largest_trial = 200'000;  // beyond, a grain costs the same
-constexpr double trial_seconds = 0.15;          // of steps, at each density
+constexpr double trial_seconds = 0.15;  // of steps, at each density
 constexpr std::uint64_t fewest_steps = 40, fewest_rows = 5;
 
 /// What is allocated, in bytes.
@@ -35,74 +31,6 @@ double heap_bytes() {
   const auto heap = mallinfo2();
   return static_cast<double>(heap.uordblks) + static_cast<double>(heap.hblkhd);
 }
-
-/// A packing beside itself, `times` along each axis.
-State tiled(const State& base, std::size_t times) {
-  State state = base;
-  state.position.clear();
-  state.velocity.clear();
-  state.radius.clear();
-  state.box = static_cast<double>(times) * base.box;
-  const Vec3 edge = base.box.diagonal();
-  for (std::size_t a = 0; a < times; ++a)
-    for (std::size_t b = 0; b < times; ++b)
-      for (std::size_t c = 0; c < times; ++c)
-        for (std::size_t i = 0; i < base.count(); ++i) {
-          const Vec3& x = base.position[i];
-          state.position.push_back({x[0] + static_cast<double>(a) * edge[0],
-                                    x[1] + static_cast<double>(b) * edge[1],
-                                    x[2] + static_cast<double>(c) * edge[2]});
-          state.velocity.push_back(base.velocity[i]);
-          state.radius.push_back(base.radius[i]);
-        }
-  return state;
-}
-
-/// A packing like the scene's, made much faster than a real one: only what its neighbourhoods cost matters.
-class TrialPacking {
- public:
-  TrialPacking(const Material& material, std::size_t count, const NewPacking& like) : material_(material) {
-    const std::size_t wanted = std::min(count, largest_trial);
-    while (wanted > whole_trial && wanted / (times_ * times_ * times_) > base_grains) ++times_;
-    NewPacking packing = like;
-    packing.count = static_cast<std::int64_t>(std::max<std::size_t>(8, wanted / (times_ * times_ * times_)));
-    state_ = random_gas(material, packing);
-    step_ = time_step(material, *std::min_element(state_.radius.begin(), state_.radius.end()), trial_step);
-  }
-
-  void compress_to(double nu) {
-    const double strain = std::log(nu / state_.volume_fraction()) / 3;
-    if (std::abs(strain) < 1e-4) return;
-    go(Mode::iso, {strain, strain, strain}, 4e-5);
-    go(Mode::relax, {}, 0);
-  }
-  /// Into flow, with grains that rearrange.
-  void shear() { go(Mode::d2, {-0.01, 0.01, 0}, 6e-6); }
-
-  /// Without copies beside it.
-  const State& base() const { return state_; }
-  State state() const { return times_ > 1 ? tiled(state_, times_) : state_; }
-
- private:
-  /// `strain_per_step` at the trial's step; a relaxation takes a thousand steps.
-  void go(Mode mode, const StrainTensor& strain, double strain_per_step) {
-    Leg leg{};
-    leg.mode = mode;
-    leg.strain = strain;
-    const double largest = std::max({std::abs(strain[0]), std::abs(strain[1]), std::abs(strain[2])});
-    leg.duration = step_ * (mode == Mode::relax ? 1000 : std::ceil(largest / strain_per_step));
-    leg.profile = Profile::constant;
-    leg.tolerance = 1e-6;
-    Dynamics dynamics(material_, state_);
-    drive(dynamics, leg, plan_steps(leg, step_, 1));
-    state_ = dynamics.state();
-  }
-
-  Material material_;
-  std::size_t times_ = 1;
-  State state_;
-  double step_ = 0;
-};
 
 /// Seconds of a call, from as many as fit into `budget` seconds; at least `least`.
 template <class F>

@@ -1,6 +1,7 @@
 #include "grainlaw/element/json.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <limits>
@@ -20,6 +21,16 @@ constexpr int deepest_nesting = 64;
 std::size_t line_of(std::string_view text, std::size_t byte) {
   return 1 +
          static_cast<std::size_t>(std::count(text.begin(), text.begin() + std::min(byte, text.size()), '\n'));
+}
+
+/// Said of a syntax error at a number that JSON does not have, as other programs write it.
+std::string hint_at(std::string_view text, std::size_t byte) {
+  constexpr std::array<std::string_view, 6> none{"NaN", "nan", "-Infinity", "-inf", "Infinity", "inf"};
+  for (const std::string_view word : none)
+    for (std::size_t back = 1; back <= 2 && back <= byte; ++back)
+      if (text.substr(std::min(byte - back, text.size())).starts_with(word))
+        return ": a number must be finite, got " + std::string(word);
+  return "";
 }
 
 /// A value as it stands in the file, shortened for a message.
@@ -56,7 +67,9 @@ Json parse_json(std::string_view text, const std::string& file) {
   try {
     return Json::parse(text, watch);
   } catch (const Json::parse_error& error) {
-    throw Error(file, "", "line " + std::to_string(line_of(text, error.byte)) + " is not valid JSON");
+    throw Error(file, "",
+                "line " + std::to_string(line_of(text, error.byte)) + " is not valid JSON" +
+                    hint_at(text, error.byte));
   } catch (const Json::exception& error) {
     throw Error(file, "", std::string("is not valid JSON: ") + error.what());
   }

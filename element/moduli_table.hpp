@@ -10,6 +10,10 @@
 
 namespace grainlaw {
 
+/// Largest net force over the mean contact force of a packing whose moduli are any: they err by about as
+/// much.
+inline constexpr double largest_moduli_residual = 1e-5;
+
 /// Its columns, in order: where the packing comes from (`file`, `frame` only of `grainlaw probe`), its state,
 /// the moduli, the 21 constants.
 const std::vector<std::string>& moduli_columns();

@@ -46,7 +46,7 @@ double pressure_drift(const std::vector<Leg>& legs, const std::vector<double>& P
 }
 
 void tell_drift(double drift, std::vector<std::string>& warnings) {
-  constexpr double tolerated = 0.01;
+  constexpr double tolerated = 0.005;
   if (std::abs(drift) <= tolerated) return;
   char percent[32];
   std::snprintf(percent, sizeof percent, "%.1f", 100 * std::abs(drift));

@@ -144,11 +144,12 @@ typedef struct grainlaw_outcome {
 /* The same for `count` points on `threads` threads (>= 1). Point i has its state at states + i * stride
  * (stride >= grainlaw_state_length()), its increment at strain_increments + 6 * i, its stress at
  * stresses + 6 * i, and, unless these are NULL, its tangent at tangents + 36 * i and its status at
- * statuses[i]. In the form "coupled" blocks of 64 points of one history go through vectors where no tangent is
- * asked for: their answers are those of grainlaw_update() within the tolerance, and the same on any number of
- * threads. `outcome` may be NULL. Returns the status of the first point that failed, and its message
- * and replay file; else GRAINLAW_UNJAMMED where any point carries nothing, else GRAINLAW_OK. A bad argument
- * of the call itself changes nothing, statuses and outcome included. */
+ * statuses[i]. In the form "coupled" blocks of 64 points of one history go through vectors where no tangent
+ * is asked for and an increment is one step to the tolerance (rtol = 1e-8: d eps_dev up to 5e-5, 1e-6: 3e-4):
+ * their answers are those of grainlaw_update() within the tolerance, and the same on any number of threads.
+ * `outcome` may be NULL. Returns the status of the first point that failed, and its message and replay file;
+ * else GRAINLAW_UNJAMMED where any point carries nothing, else GRAINLAW_OK. A bad argument of the call itself
+ * changes nothing, statuses and outcome included. */
 int grainlaw_update_many(grainlaw_context* context, size_t count, double* states, size_t stride,
                          const double* strain_increments, double* stresses, double* tangents, int threads,
                          int* statuses, grainlaw_outcome* outcome);

@@ -1,5 +1,6 @@
 #include "grainlaw/model/light/light_law.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -82,7 +83,7 @@ Status LightLaw::admits(const State& state, const Stretch& stretch) const {
   if (!is_finite(state))
     return {Status::Code::failed,
             "the state holds what is not a number: nu, P, sigma_dev, F_dev or its memory"};
-  constexpr double slack = 1e-6;  // of an integration
+  const double slack = std::clamp(10 * light_.tolerance.rtol, 1e-6, 0.01);  // what an integration leaves
   if (!(state.memory >= -slack && state.memory <= 1 + slack))
     return {Status::Code::failed, "the memory of shear must be in [0, 1], got " + shown(state.memory)};
   if (!std::isfinite(stretch.eps_vol) || !std::isfinite(stretch.eps_dev))

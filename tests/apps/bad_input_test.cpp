@@ -217,9 +217,10 @@ TEST_F(BadInput, CommandLines) {
       {{"calibrate", "--jobs", "0"}, "--jobs: must be a whole number from 1 to 1024, got 0"},
       {{"calibrate", "--jobs", "many"}, "--jobs: must be a whole number from 1 to 1024, got many"},
       {{"calibrate", "a", "b"}, "grainlaw calibrate: The following argument was not expected: b"},
-      {{"predict", "a", "b", "--rtol", "0"}, "--rtol: must be a number > 0 and <= 0.1, got 0"},
+      {{"predict", "a", "b", "--rtol", "0"}, "--rtol: must be a number >= 1e-12 and <= 0.1, got 0"},
       {{"predict", "a", "b", "--rows", "-3"}, "--rows: must be a whole number from 1 to 100000, got -3"},
-      {{"predict", "a", "b", "--form", "plastic"}, "plastic"},
+      {{"predict", "a", "b", "--form", "plastic"}, "coupled_3_14 or minimal, got \"plastic\""},
+      {{"predict", "a", "b", "--form", "minimal+axial"}, "--form: minimal takes no terms"},
   };
   for (const auto& [arguments, message] : lines) EXPECT_TRUE(refuses(run(arguments), {message})) << message;
 }

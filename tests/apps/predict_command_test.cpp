@@ -117,6 +117,11 @@ TEST_F(Predict, FollowsATableOfStrains) {
   EXPECT_EQ(predict({"--nu", "0.7", "--P", "0.02"}, "bare.csv")["P"][0], 0.02);
   // k/(2<r>) of the thesis's grains is 1e8 kg/s2 over 2 mm: 50 GPa.
   EXPECT_DOUBLE_EQ(predict({"--nu", "0.7", "--P", "1e6kPa"}, "bare.csv")["P"][0], 0.02);
+  // A table in kPa, as --si writes it, starts from its own pressure.
+  write("kpa.csv", "eps_vol,eps_dev,nu,P_kPa\n0,0,0.7,1e6\n0,0.1,0.7,\n");
+  EXPECT_DOUBLE_EQ(predict({}, "kpa.csv")["P"][0], 0.02);
+  EXPECT_TRUE(refuses(run({"predict", "data/thesis/parameters.json", "kpa.csv", "--P", "0.02"}),
+                      {"kpa.csv: P_kPa: line 2: says the start already; leave out --P"}));
   EXPECT_TRUE(
       refuses(run({"predict", "data/thesis/parameters.json", "bare.csv", "--nu", "0.7", "--P", "50"}),
               {"--P: must be a number between 0 and 1, over k* = 5e+07 kPa, or in kPa with that unit"}));

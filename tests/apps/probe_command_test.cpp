@@ -132,8 +132,10 @@ TEST_F(ProbeCommand, BadInput) {
   EXPECT_TRUE(refused({"-o", "m.csv", "--undo"}, {"--undo: must come with a strain to undo"}));
   EXPECT_TRUE(
       refused({"-o", "m.csv", "--amplitude", "0"}, {"--amplitude: must be a number >= 1e-09", "got 0"}));
-  EXPECT_TRUE(refused({"-o", "m.csv", "--residual", "1e-3", "--amplitude", "1e-6"},
-                      {"--amplitude: must be at least 1000 times the residual, which is 0.001; got 1e-6"}));
+  EXPECT_TRUE(refused({"-o", "m.csv", "--residual", "1e-8", "--amplitude", "1e-6"},
+                      {"--amplitude: must be at least 1000 times the residual, which is 1e-08; got 1e-6"}));
+  EXPECT_TRUE(refused({"-o", "m.csv", "--residual", "1e-3"},
+                      {"--residual: must be a number >= 1e-13 and <= 1e-05, got 1e-3"}));
   EXPECT_TRUE(refused({"-o", "no/m.csv"}, {"-o: must lie in a directory that exists, got no/m.csv"}));
   EXPECT_TRUE(refused({"-o", "r/scene.json"}, {"-o", "r/scene.json"}));
   EXPECT_TRUE(refuses(run({"probe", "r", "-o", "m.csv"}),

@@ -36,7 +36,7 @@ double processor_seconds() {
 double least_error(const StaticPacking& packing, const Stiffness& stress, double pressure) {
   double least = 1;
   for (const double share : strains_over_pressure)
-    least = std::min(least, error_at(packing, stress, share * pressure));
+    least = std::min(least, distance(differences_at(packing, share * pressure), stress).of_largest);
   return least;
 }
 

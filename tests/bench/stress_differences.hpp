@@ -30,17 +30,35 @@ inline Sym6 stress_at(const StaticPacking& start, std::size_t component, double 
   return packing.measure().stress;
 }
 
-/// The largest difference of `stress` from central differences with strains of +-h, over the largest of them.
-inline double error_at(const StaticPacking& packing, const Stiffness& stress, double h) {
-  double error = 0, largest = 0;
+/// The 36 derivatives of the stress by central differences with strains of +-h.
+inline Stiffness differences_at(const StaticPacking& packing, double h) {
+  Stiffness slopes{};
   for (std::size_t b = 0; b < 6; ++b) {
     const Sym6 plus = stress_at(packing, b, h), minus = stress_at(packing, b, -h);
-    for (std::size_t a = 0; a < 6; ++a) {
-      error = std::max(error, std::abs((plus[a] - minus[a]) / (2 * h) - stress[a][b]));
-      largest = std::max(largest, std::abs(stress[a][b]));
-    }
+    for (std::size_t a = 0; a < 6; ++a) slopes[a][b] = (plus[a] - minus[a]) / (2 * h);
   }
-  return error / largest;
+  return slopes;
+}
+
+/// How far `measured` lies from `exact`.
+struct Distance {
+  double of_largest = 0;  ///< the largest difference, over the largest constant
+  double of_each = 0;     ///< the largest difference over the constant that it belongs to
+  double there = 0;       ///< that constant, over the largest
+};
+
+inline Distance distance(const Stiffness& measured, const Stiffness& exact) {
+  Distance found;
+  double largest = 0;
+  for (const Sym6& row : exact)
+    for (const double c : row) largest = std::max(largest, std::abs(c));
+  for (std::size_t a = 0; a < 6; ++a)
+    for (std::size_t b = 0; b < 6; ++b) {
+      const double size = std::abs(exact[a][b]), error = std::abs(measured[a][b] - exact[a][b]);
+      found.of_largest = std::max(found.of_largest, error / largest);
+      if (error > found.of_each * size) found.of_each = error / size, found.there = size / largest;
+    }
+  return found;
 }
 
 }  // namespace grainlaw::dem

@@ -165,18 +165,21 @@ TEST(ModuliSelection, TakesLinearResponseAndNamesWhatItLeavesOut) {
                             {0, 0.2, 0, none, 0, none, 0, 0, 0},
                             {0, 0.3, 0, none, 0, none, 100, 200, 1e-11},
                             {0, 0.4, 0, none, 0, none, 900, 3000, 1e-3},
+                            {0, 0.5, 0, 0.4, 0, 0, 900, 3000, 2e-5},
                             {1, 0.4, 0, 0.4, 0, 0, 900, 3000, 1e-11}});
   ModuliCount count;
   const ModuliSeries series = moduli_states(made, "d2-s1", "1", 0, count);
   ASSERT_EQ(series.states.size(), 1u);
   EXPECT_EQ(series.states[0].B, 0.5);
   EXPECT_EQ(count.unstable, 1u);
-  EXPECT_EQ(count.refused, 3u);
+  EXPECT_EQ(count.refused, 4u);
   EXPECT_EQ(
       count.text(),
       "1 state in no stable balance; eps_dev = 0.2: unjammed: no grain bears load; eps_dev = 0.3: contacts "
       "below isostatic: 200 between the 100 grains that bear load, a stable balance takes at least 298; "
       "eps_dev = 0.4: not in balance: the largest net force on a grain is 0.001 times the mean contact "
+      "force; eps_dev = 0.5: not in balance: the largest net force on a grain is 2e-05 times the mean "
+      "contact "
       "force");
 }
 

@@ -24,6 +24,12 @@ Reader reader_of(const std::string& text) { return {parse_json(text, "a.json"), 
 TEST(Json, SyntaxErrorNamesTheLine) {
   EXPECT_EQ(refusal([] { parse_json("{\n\"a\": 1,\n}", "a.json"); }), "a.json: line 3 is not valid JSON");
   EXPECT_EQ(refusal([] { parse_json("", "a.json"); }), "a.json: line 1 is not valid JSON");
+  EXPECT_EQ(refusal([] { parse_json("{\"a\": [1,\nNaN]}", "a.json"); }),
+            "a.json: line 2 is not valid JSON: a number must be finite, got NaN");
+  EXPECT_EQ(refusal([] { parse_json("{\"a\": -Infinity}", "a.json"); }),
+            "a.json: line 1 is not valid JSON: a number must be finite, got -Infinity");
+  EXPECT_EQ(refusal([] { parse_json("{\"a\": null, nan}", "a.json"); }),
+            "a.json: line 1 is not valid JSON: a number must be finite, got nan");
 }
 
 TEST(Json, KeyGivenTwiceIsRefused) {

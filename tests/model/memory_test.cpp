@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "grainlaw/model/light/light_law.hpp"
 #include "grainlaw/model/start.hpp"
 #include "memory_fixture.hpp"
@@ -247,6 +249,24 @@ TEST(Memory, LightPathAgreesWithCvodeThroughEverything) {
       EXPECT_NEAR(state.memory, reference[i].memory, 10 * rtol) << i;
     }
   }
+}
+
+/// What an integration leaves is admitted again: loose steps may take m past 1 by their error.
+TEST(Memory, AdmitsItsOwnStatesAtALooseTolerance) {
+  const Law law = make_law(with_memory(), Form::memory);
+  for (const LightMethod method : {LightMethod::automatic, LightMethod::explicit_third})
+    for (const double rtol : {1e-3, 1e-4}) {
+      const LightLaw light(law, {rtol, 1e-3 * rtol}, method);
+      State state = isotropic(0.64, 0.6567, 0.64);
+      for (const auto& [v, e] : eventful)
+        for (int i = 0; i < 10; ++i) {
+          const Status status = light.update(state, v / 10, e / 10);
+          ASSERT_FALSE(status.failed()) << status.message;
+        }
+      EXPECT_NEAR(state.memory, std::clamp(state.memory, 0.0, 1.0), 10 * rtol);
+      state.memory = 1.5;
+      EXPECT_TRUE(light.update(state, 0, 1e-3).failed());
+    }
 }
 
 TEST(Memory, TangentThroughShearJamming) {

@@ -241,6 +241,16 @@ TEST(Predict, SaysHowMuchPressureIsPumped) {
   EXPECT_EQ(warnings_of(cut, pumping()).size(), 1U);
 }
 
+/// The thesis's own numbers, with P of Table 4.1's in Eq. 2.14: 0.8 to 0.9 % a half cycle.
+TEST(Predict, SaysThatTheThesisSetPumps) {
+  const auto said = walk(R"({"start": {"nu": 0.711, "P": 0.0264}, "segments": [)" + d2_to(0.4) + "," +
+                             d2_to(-0.4) + "," + d2_to(0.4) + "]}",
+                         Form::coupled, 1)
+                        .warnings;
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_THAT(said[0], testing::AnyOf(HasSubstr("up to 0.8 % of P"), HasSubstr("up to 0.9 % of P")));
+}
+
 TEST(Predict, DoesNotTakeATransientForPumping) {
   const std::string cycle = d2_to(0.4) + "," + d2_to(-0.4) + "," + d2_to(0.4);
   EXPECT_TRUE(warnings_of(cycle + "," + d2_to(-0.4) + "," + d2_to(0.4), thesis()).empty());  // 0.08 %
