@@ -167,11 +167,13 @@ std::string prediction_table(const Json& predictions) {
     const Json found = one.value("errors", Json::object());
     for (const char* name : error_names) errors[key][name].add(found.value(name, Json()));
   }
-  std::string text = fmt::format("{:<16} {:<14}", "prediction of", "form");
+  std::size_t width = 14;  // names grow with their terms
+  for (const auto& key : order) width = std::max(width, key.second.size());
+  std::string text = fmt::format("{:<16} {:<{}}", "prediction of", "form", width);
   for (const char* name : error_names) text += fmt::format(" {:>9}", name);
   text += "   (relative L2 error, mean over seeds)\n";
   for (const auto& key : order) {
-    text += fmt::format("{:<16} {:<14}", key.first, key.second);
+    text += fmt::format("{:<16} {:<{}}", key.first, key.second, width);
     for (const char* name : error_names) text += fmt::format(" {:>9}", errors[key][name].text());
     text += "\n";
   }

@@ -57,9 +57,11 @@ std::optional<model::PackingLaw> packing_law(const PackingFit& fit, const KnownV
                                              const KnownValues& thesis, const Reference& reference);
 /// Group moduli out of its fits; g3 is Eq. 3.8 for the records' own w.
 std::optional<model::ModuliLaws> moduli_laws(const ModuliFit& fit, const Reference& reference);
-/// Group volumetric out of its fits; none where the data do not determine compression. Decompression that they
-/// do not determine is assumed to do nothing, as in the thesis.
+/// Group volumetric out of its fits; none where the data do not determine compression. Decompression that
+/// they do not determine is assumed to do nothing, as in the thesis.
 std::optional<model::VolumetricLaws> volumetric_laws(const VolumetricFit& fit, const Reference& reference);
+/// What is assumed where no test tells.
+model::VolumetricLaws usual_volumetric_laws();
 /// Group memory out of its fits; without phi_cr where the data do not tell it. None if a law could not be
 /// fitted and nobody knows its values.
 std::optional<model::MemoryLaws> memory_laws(const MemoryFit& fit, const Reference& reference);

@@ -106,6 +106,7 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
   if (account.density.contains("d3")) out.parameters.shear_axial = shear_laws(account, "d3", reference);
   out.parameters.moduli = moduli(account, reference);
   if (account.volumetric) out.parameters.volumetric = volumetric_laws(*account.volumetric, reference);
+  if (!out.parameters.volumetric && out.parameters.shear) out.parameters.volumetric = usual_volumetric_laws();
   out.parameters.memory = account.memory ? memory_laws(*account.memory, reference) : reference.memory();
   if (!account.cycles.empty()) out.over_compression = over_compression_table(account.cycles);
   if (!account.shear_jammings.empty()) out.shear_jamming = shear_jamming_table(account.shear_jammings);

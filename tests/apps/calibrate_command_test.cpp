@@ -91,7 +91,7 @@ TEST_F(Calibrate, LeavesRecordsParametersPredictionsAndAReport) {
   std::set<std::string> forms;
   for (const Json& one : predictions) forms.insert(one.at("form").get<std::string>());
   EXPECT_EQ(predictions.size(), 2 * forms.size());
-  for (const char* form : {"reduced_closed", "reduced", "coupled", "memory"})
+  for (const char* form : {"reduced_closed", "reduced", "coupled", "coupled+volumetric", "memory+volumetric"})
     EXPECT_TRUE(forms.contains(form)) << form;
   for (const Json& one : predictions)
     EXPECT_TRUE(one.at("test").get<std::string>().starts_with("uni-0.695-s")) << one;

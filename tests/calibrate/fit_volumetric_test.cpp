@@ -88,9 +88,16 @@ TEST_F(FitVolumetric, WithoutDecompressionThatIsNeglected) {
   EXPECT_EQ(volumetric->decompression.note, "neglected, as in the thesis: no data");
 }
 
-TEST_F(FitVolumetric, WithoutCompressionThereIsNoGroup) {
+TEST_F(FitVolumetric, WithoutCompressionTheNumbersAreAssumed) {
   std::filesystem::remove_all(record("up-s1"));
-  EXPECT_FALSE(fitted().parameters.volumetric);
+  const auto volumetric = fitted().parameters.volumetric;
+  ASSERT_TRUE(volumetric);
+  EXPECT_EQ(volumetric->compression.value, 9.05);  // docs/model.md, Fabric under change of volume
+  EXPECT_EQ(volumetric->decompression.value, 0.86);
+  for (const auto* number : {&volumetric->compression, &volumetric->decompression}) {
+    EXPECT_EQ(number->source, "assumed");
+    EXPECT_THAT(number->note, HasSubstr("data/records/volumetric"));
+  }
 }
 
 TEST_F(FitVolumetric, RowsFromTheFirstThatCarriesNothingAreNotRead) {
