@@ -91,8 +91,10 @@ TEST_F(Calibrate, LeavesRecordsParametersPredictionsAndAReport) {
   std::set<std::string> forms;
   for (const Json& one : predictions) forms.insert(one.at("form").get<std::string>());
   EXPECT_EQ(predictions.size(), 2 * forms.size());
-  for (const char* form : {"reduced_closed", "reduced", "coupled", "coupled+volumetric", "memory+volumetric"})
+  for (const char* form : {"reduced_closed", "reduced", "coupled", "memory+volumetric"})
     EXPECT_TRUE(forms.contains(form)) << form;
+  // Whether the tiny campaign tells the numbers of `energy`, too, is a matter of chance.
+  EXPECT_TRUE(forms.contains("coupled+volumetric") || forms.contains("coupled+energy+volumetric"));
   for (const Json& one : predictions)
     EXPECT_TRUE(one.at("test").get<std::string>().starts_with("uni-0.695-s")) << one;
   // Time of every stage and speed of every test.
