@@ -6,6 +6,7 @@
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/element/path_limits.hpp"
+#include "grainlaw/element/words.hpp"
 
 namespace grainlaw {
 
@@ -105,6 +106,10 @@ void read_strain(Reader& reader, Segment& segment) {
 }
 
 void read_amount(Reader& reader, Segment& segment) {
+  if (!reader.has("controls") && !reader.has("amount"))
+    for (const std::string& key : reader.keys())
+      if (const std::string meant = nearest_word(key, {"controls", "amount"}); !meant.empty())
+        reader.fail(key, "unknown key, did you mean " + meant + "?");
   if (reader.has("controls") == reader.has("amount"))
     reader.fail("", reader.has("amount") ? "redundant: controls and amount both say how far; give one"
                                          : "must give either controls or amount");

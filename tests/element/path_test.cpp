@@ -182,6 +182,10 @@ TEST(Path, RefusesTwoTargetsThatCannotBe) {
               testing::HasSubstr("segments[0].controls.P: must be"));
   EXPECT_EQ(refused_segment(R"({"mode": "d2", "amount": 0.1, "stop": {"column": "P"}})"),
             "p.json: segments[0].stop: must give above or below");
+  EXPECT_EQ(refused_segment(R"({"mode": "d2", "amuont": 0.1})"),
+            "p.json: segments[0].amuont: unknown key, did you mean amount?");
+  EXPECT_EQ(refused_segment(R"({"mode": "d2", "rate": 0.1})"),
+            "p.json: segments[0]: must give either controls or amount");
   EXPECT_THAT(refused_segment(R"({"mode": "d2", "amount": 0.1, "stop": {"column": "t", "above": 1}})"),
               testing::HasSubstr("segments[0].stop.column: must be one of eps_vol, eps_dev, nu"));
 }
