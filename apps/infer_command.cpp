@@ -18,7 +18,7 @@ namespace grainlaw::apps {
 namespace {
 
 struct Arguments {
-  std::string record, parameters, mode = "iso", output;
+  std::string record, parameters, mode = "iso", scatter = "0", output;
 };
 
 constexpr double thesis_size_ratio = 3;
@@ -31,10 +31,11 @@ int run(const Arguments& arguments) {
   if (const std::vector<std::string> rows{"iso", "uni", "d2", "d3"};
       std::find(rows.begin(), rows.end(), arguments.mode) == rows.end())
     throw Error("", "--mode", "must be one of iso, uni, d2, d3, got \"" + arguments.mode + "\"");
+  const double scatter = read_number("--scatter", arguments.scatter, between(0, 0.1));
   const auto set = model::ParameterSet::load(file);
   const model::PackingLaw& law = set.packing(arguments.mode, "infer-phij, which inverts its laws,");
   const Record record = Record::read_csv(arguments.record, {"nu", "P"});
-  const Record inferred = model::infer_jamming_density(record, law);
+  const Record inferred = model::infer_jamming_density(record, law, scatter);
   if (arguments.output.empty())
     write_stdout(inferred.to_csv());
   else
@@ -58,6 +59,12 @@ Action add_infer(CLI::App& program) {
       ->type_name("PARAMETERS.json");
   command->add_option("--mode", arguments->mode, "row of these laws: iso, uni, d2 or d3")
       ->type_name("MODE")
+      ->capture_default_str();
+  command
+      ->add_option("--scatter", arguments->scatter,
+                   "how far packings differ in their jamming density (standard deviation), to be added to "
+                   "the stated errors, which are of the laws' numbers alone: 5e-4 for 1000 or 2000 grains")
+      ->type_name("X")
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output, "table to write (default: standard output)")
       ->type_name("FILE.csv");

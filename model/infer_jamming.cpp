@@ -36,9 +36,10 @@ constexpr Parameter PackingLaw::*numbers[] = {&PackingLaw::C0,     &PackingLaw::
                                               &PackingLaw::phi_c,  &PackingLaw::phi_v, &PackingLaw::p0,
                                               &PackingLaw::gamma_p};
 
-/// Root of the sum of squares of what each stated error moves; NaN where nothing moves.
-Estimates errors_of(const PackingLaw& law, const State& s, const Estimates& at) {
-  Estimates squares{};
+/// Root of the sum of squares of the scatter and of what each stated error moves; NaN where that is nothing.
+Estimates errors_of(const PackingLaw& law, const State& s, const Estimates& at, double scatter) {
+  Estimates squares;
+  for (std::size_t i = 0; i < at.size(); ++i) squares[i] = std::isfinite(at[i]) ? scatter * scatter : nan;
   for (const auto number : numbers) {
     PackingLaw moved = law;
     Parameter& p = moved.*number;
@@ -74,7 +75,7 @@ std::optional<double> jamming_density_from_pressure_and_contacts(const PressureC
   return nu * std::exp(-turning_point(0, range, too_little));
 }
 
-Record infer_jamming_density(const Record& record, const PackingLaw& law) {
+Record infer_jamming_density(const Record& record, const PackingLaw& law, double scatter) {
   std::vector<std::string> columns;
   for (const char* name : {"segment", "eps_vol", "eps_dev"})
     if (record.has(name)) columns.emplace_back(name);
@@ -90,7 +91,7 @@ Record infer_jamming_density(const Record& record, const PackingLaw& law) {
   Record out(columns);
   for (std::size_t i = 0; i < record.rows(); ++i) {
     const State s{record["nu"][i], record["P"][i], field("C", i), field("C_star", i), field("f_NR", i)};
-    const Estimates phi_J = estimates_of(law, s), errors = errors_of(law, s, phi_J);
+    const Estimates phi_J = estimates_of(law, s), errors = errors_of(law, s, phi_J, scatter);
     std::vector<double> row;
     for (std::size_t k = 0; k < kept; ++k) row.push_back(record[columns[k]][i]);
     for (std::size_t k = 0; k < phi_J.size(); ++k) {

@@ -25,8 +25,9 @@ std::optional<double> jamming_density_from_pressure_and_contacts(const PressureC
 /// What a record tells: columns segment, eps_vol, eps_dev, nu (those that it has), then phi_J and its error
 /// from P with the measured C (`phi_J`), from P with the C of the law (`phi_J_pressure_alone`), from C*
 /// (`phi_J_contacts`) and from f_NR (`phi_J_nonrattlers`); an empty field where a column lacks or the state
-/// is not jammed. Errors are those of the law's numbers, each by itself, in quadrature; empty where none
-/// states one. Needs columns nu and P.
-Record infer_jamming_density(const Record& record, const PackingLaw& law);
+/// is not jammed. Errors are those of the law's numbers, each by itself, and `scatter`, how far phi_J of one
+/// packing is from that of another (standard deviation, >= 0), in quadrature; empty where none is stated.
+/// Needs columns nu and P.
+Record infer_jamming_density(const Record& record, const PackingLaw& law, double scatter = 0);
 
 }  // namespace grainlaw::model

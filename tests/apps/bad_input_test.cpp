@@ -211,6 +211,7 @@ TEST_F(BadInput, CommandLines) {
       {{"bench", "models"},
        "grainlaw bench: must be followed by one of dem, model; see grainlaw bench --help"},
       {{"infer-phij", "r.csv", "--mode", "iso2"}, "--mode: must be one of iso, uni, d2, d3, got \"iso2\""},
+      {{"infer-phij", "r.csv", "--scatter", "-1"}, "--scatter: must be a number >= 0 and <= 0.1, got -1"},
       {{"--vesion"}, "grainlaw: unknown option --vesion; see grainlaw --help"},
       {{"simulate"}, "grainlaw simulate: SCENE.json is required; see grainlaw simulate --help"},
       {{"simulate", "s.json"}, "simulate: -o DIR is missing"},

@@ -80,6 +80,21 @@ TEST(InferJamming, AlongARecordWithErrors) {
   EXPECT_TRUE(std::isnan(out["phi_J_contacts_error"][1]));  // p0 is no matter of the contacts
 }
 
+/// What the law's numbers leave open, and how far packings differ.
+TEST(InferJamming, ScatterOfPackingsAddsInQuadrature) {
+  PackingLaw law = table_5_1();
+  law.p0.stderr_ = 0.001;
+  Record record({"nu", "P", "C_star"});
+  record.append({0.7, 0.02, 7.5});
+  record.append({0.66, 0, nan});
+  const Record alone = infer_jamming_density(record, law), both = infer_jamming_density(record, law, 5e-4);
+  EXPECT_NEAR(both["phi_J_pressure_alone_error"][0], std::hypot(alone["phi_J_pressure_alone_error"][0], 5e-4),
+              1e-15);
+  EXPECT_NEAR(both["phi_J_contacts_error"][0], 5e-4, 1e-15);
+  EXPECT_TRUE(std::isnan(both["phi_J_contacts_error"][1]));     // not jammed
+  EXPECT_TRUE(std::isnan(both["phi_J_nonrattlers_error"][0]));  // not measured
+}
+
 /// Grains that touch in passing press, too: with fewer contacts than balance needs there is nothing to infer.
 TEST(InferJamming, PressureOfTooFewContactsSaysNothing) {
   Record record({"nu", "P", "C", "C_star", "f_NR"});
