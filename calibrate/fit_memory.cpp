@@ -15,6 +15,8 @@ namespace {
 
 /// Volume fractions of states, and amplitudes of over-compression, closer than this count as one.
 constexpr double nu_resolution = 5e-4;
+/// Legs of shear whose volume fractions are closer than this are of one path.
+constexpr double same_nu = 1e-5;
 /// Eqs. 5.2 and 5.5 have an infinite slope where a volume fraction of the data meets phi_SJ: it stays below
 /// the lowest by this share.
 constexpr double off_phi_SJ = 1e-4;
@@ -89,6 +91,32 @@ std::vector<FitSeries> one_point_each(const std::vector<ShearJamming>& runs, dou
     series.push_back({run.test, run.group, {{run.nu, strain, run.phi_J0.value, 0}}});
   }
   return series;
+}
+
+bool same_packing(const ShearJamming& a, const ShearJamming& b) {
+  return a.group == b.group && a.M == b.M && std::abs(a.phi_max - b.phi_max) < nu_resolution &&
+         std::abs(a.nu - b.nu) < same_nu;
+}
+
+/// Legs of one packing at one volume fraction are not independent: one run, with the mean of their strains.
+std::vector<ShearJamming> mean_reversals(const std::vector<ShearJamming>& runs) {
+  std::vector<ShearJamming> means;
+  std::vector<double> legs;
+  for (const ShearJamming& run : runs) {
+    if (run.reversals == 0 || !run.jammed_before || !std::isfinite(run.by(JamSign::contacts))) continue;
+    const auto of_packing = std::find_if(means.begin(), means.end(),
+                                         [&](const ShearJamming& other) { return same_packing(run, other); });
+    if (of_packing == means.end()) {
+      means.push_back(run);
+      legs.push_back(1);
+      continue;
+    }
+    double& n = legs[static_cast<std::size_t>(of_packing - means.begin())];
+    double& mean = of_packing->strain[static_cast<std::size_t>(JamSign::contacts)];
+    n += 1;
+    mean += (run.by(JamSign::contacts) - mean) / n;
+  }
+  return means;
 }
 
 double lowest_x(const std::vector<FitSeries>& series, double otherwise) {
@@ -257,9 +285,8 @@ FitProblem reversal_problem(const std::vector<ShearJamming>& runs, const KnownVa
                             const KnownValue& alpha, const KnownValues& known) {
   FitProblem problem;
   problem.law = differentiable<4>(ReversalLaw{});
-  problem.series = one_point_each(runs, phi_SJ.value * (1 + off_phi_SJ), [](const ShearJamming& run) {
-    return run.reversals == 1 && run.jammed_before;
-  });
+  problem.series = one_point_each(mean_reversals(runs), phi_SJ.value * (1 + off_phi_SJ),
+                                  [](const ShearJamming&) { return true; });
   problem.points = Points::runs;
   problem.starts = starts;
   const double lowest = lowest_x(problem.series, 0.66);

@@ -61,8 +61,9 @@ std::vector<Entanglement> entanglement(const FitProblem& problem, const FitResul
 FitProblem shear_jamming_problem(const std::vector<ShearJamming>& runs, const KnownValue& phi_SJ,
                                  const KnownValues& known);
 
-/// The same after the first reversal, with phi_cr in place of phi_J0 (Eq. 5.13); runs that stay jammed count
-/// with strain 0. Parameters phi_SJ_sheared (held), alpha (held), eps0_R, phi_cr.
+/// The same after reversals, with phi_cr in place of phi_J0 (Eq. 5.13): one point for each packing at one
+/// volume fraction, the mean over its reversals that followed a jammed leg; those that stay jammed count with
+/// strain 0. Parameters phi_SJ_sheared (held), alpha (held), eps0_R, phi_cr.
 FitProblem reversal_problem(const std::vector<ShearJamming>& runs, const KnownValue& phi_SJ,
                             const KnownValue& alpha, const KnownValues& known);
 

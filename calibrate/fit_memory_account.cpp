@@ -174,8 +174,9 @@ FitEntry reversal_entry(const MemoryFit& fit, const Selection& selection) {
   entry.y_name = "eps_SJ_R";
   entry.y_label = "strain to jam again after reversal ε_SJ,R";
   entry.known_name.clear();
-  entry.selection =
-      shear_jamming_rule(selection) + "; first reversals of packings that had jammed, 0 where they stay so";
+  entry.selection = shear_jamming_rule(selection) +
+                    "; reversals of packings that had jammed, 0 where they stay so, mean of each "
+                    "packing at one volume fraction";
   entry.problem = fit.reversal_law;
   entry.result = fit.reversal;
   entry.known_at = {};

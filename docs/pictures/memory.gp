@@ -68,7 +68,7 @@ plot for [phi in "0.82 0.73 0.68"] shear using (scaled(column("nu"), column("phi
 set xrange [0.654:0.665]; set yrange [0:0.45]; set xtics 0.002
 set xlabel "volume fraction φ"; set ylabel "strain to jam again ε_{SJ,R}"
 set key inside top right maxrows 8
-back(y) = column("reversals") == 1 && column("jammed_before") == 1 ? y : NaN
+back(y) = column("reversals") > 0 && column("jammed_before") == 1 ? y : NaN
 again(x) = x >= phi_cr ? 0 : eps0_R*(-log((x - phi_SJ)/(phi_cr - phi_SJ)))**(1/alpha)
 plot for [phi in "0.82 0.73 0.68"] shear using "nu":(back(at(phi + 0.0, column("eps_contacts")))) \
        with points pt 7 ps 0.9 lc rgb colour_of(phi) title "φ_{max} = " . phi, \

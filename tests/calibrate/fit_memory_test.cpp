@@ -218,6 +218,23 @@ TEST(MemoryFits, ReversalGivesItsTwoNumbersBack) {
   EXPECT_TRUE(result["alpha"].held);
 }
 
+TEST(MemoryFits, ReversalsOfOnePackingCountOnce) {
+  std::vector<ShearJamming> runs = shear_runs();
+  const FitProblem first = reversal_problem(runs, 0.6567, 1.37, thesis_values);
+  for (std::size_t reversals = 2; reversals < 8; ++reversals)  // about the first, mean as before
+    for (const ShearJamming& run : shear_runs())
+      if (run.reversals == 1)
+        runs.push_back(
+            sheared(run.nu, 0.6652, reversals, run.strain[0] + (reversals % 2 == 0 ? 0.01 : -0.01)));
+  const FitProblem all = reversal_problem(runs, 0.6567, 1.37, thesis_values);
+  ASSERT_EQ(all.series.size(), first.series.size());
+  for (std::size_t i = 0; i < all.series.size(); ++i)
+    EXPECT_NEAR(all.series[i].points.at(0).y, first.series[i].points.at(0).y, 1e-12);
+  const FitResult result = fit(all);
+  expect_value(result, "eps0_R", 0.17, 1e-5);
+  expect_value(result, "phi_cr", 0.6618, 1e-6);
+}
+
 TEST(MemoryFits, WithoutRunsTheKnownValuesStandMarkedAsHeld) {
   const MemoryFit result = fit_memory(cycles_of(thesis, 6), {}, thesis_values);
   EXPECT_TRUE(result.over_compression["phi_SJ"].determined);

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "fit_fixture.hpp"
@@ -57,26 +59,26 @@ TEST(MemoryData, LawsRefitted) {
   expect_printed(fit.over_compression["alpha_phi"], 0.368, 5e-3);
   expect_printed(fit.over_compression["mu"], 1.84, 5e-2);
   expect_printed(fit.over_compression["beta"], 0.306, 5e-3);
-  expect_printed(fit.shear["alpha"], 1.48, 1e-2);
-  expect_printed(fit.shear["eps0"], 0.112, 1e-3);
-  expect_printed(fit.reversal["eps0_R"], 0.187, 1e-3);
-  expect_printed(fit.reversal["phi_cr"], 0.6631, 1e-4);
+  expect_printed(fit.shear["alpha"], 1.52, 1e-2);
+  expect_printed(fit.shear["eps0"], 0.113, 1e-3);
+  expect_printed(fit.reversal["eps0_R"], 0.200, 1e-3);
+  expect_printed(fit.reversal["phi_cr"], 0.6629, 1e-4);
 }
 
-/// By the scatter alone, all but the exponent of the amplitude and mu; the exponent comes near within what N
-/// and rate cost (1e-3 of phi_J).
-TEST(MemoryData, AgreesWithTheThesisWithinTwoErrorsButForTwo) {
+/// By the scatter alone, all but the exponent of the amplitude, mu and eps0_R; the exponent comes near within
+/// what N and rate cost (1e-3 of phi_J).
+TEST(MemoryData, AgreesWithTheThesisWithinTwoErrorsButForThree) {
   const MemoryFit fit = fit_memory(cycles(), runs(), thesis(), rest().by_pressure);
   for (const auto& [law, name, value] : {std::tuple{&fit.over_compression, "alpha_max", 0.02},
                                          {&fit.over_compression, "beta", 0.3},
                                          {&fit.shear, "alpha", 1.37},
-                                         {&fit.shear, "eps0", 0.102},
-                                         {&fit.reversal, "eps0_R", 0.17}}) {
+                                         {&fit.shear, "eps0", 0.102}}) {
     const FitEstimate& e = (*law)[name];
     EXPECT_LT(std::abs(e.value - value), 2 * *e.stderr_) << name;
   }
   const FitEstimate& exponent = fit.over_compression["alpha_phi"];
   EXPECT_GT(exponent.value - 0.3, 3 * *exponent.stderr_);
+  EXPECT_NEAR((fit.reversal.value("eps0_R") - 0.17) / *fit.reversal["eps0_R"].stderr_, 2.1, 0.1);
   EXPECT_GT(fit.over_compression.value("mu") - 1, 2 * *fit.over_compression["mu"].stderr_);
 }
 
@@ -95,10 +97,17 @@ TEST(MemoryData, TheSystematicErrorIsLargerThanTheScatter) {
   EXPECT_NEAR(low.over_compression.value("alpha_phi"), 0.418, 5e-3);
   EXPECT_NEAR(high.over_compression.value("alpha_max"), 0.0205, 2e-4);
   EXPECT_NEAR(low.over_compression.value("alpha_max"), 0.0197, 2e-4);
-  EXPECT_NEAR(high.shear.value("alpha"), 1.26, 1e-2);
+  EXPECT_NEAR(high.shear.value("alpha"), 1.29, 1e-2);
   EXPECT_NEAR(low.shear.value("alpha"), 1.86, 1e-2);
-  EXPECT_NEAR(high.reversal.value("phi_cr"), 0.6637, 1e-4);
+  EXPECT_NEAR(high.reversal.value("phi_cr"), 0.6632, 1e-4);
   EXPECT_NEAR(low.reversal.value("phi_cr"), 0.6626, 1e-4);
+}
+
+double deviation(const std::vector<double>& values) {
+  double mean = 0, square = 0;
+  for (const double v : values) mean += v / static_cast<double>(values.size());
+  for (const double v : values) square += (v - mean) * (v - mean);
+  return std::sqrt(square / static_cast<double>(values.size() - 1));
 }
 
 /// The same three packings at the same rate, once prepared with a rest and once without: a packing has no
@@ -117,6 +126,79 @@ TEST(MemoryData, APackingRepeatsItselfNoBetterThanOthersDo) {
     most = std::max(most, std::abs(first(rates) - first(from_rest)));  // the fastest, 4e-5, comes first
   }
   EXPECT_NEAR(most, 2.6e-3, 1e-4);
+}
+
+/// Whether a leg of shear back or forth unjams what the leg before it had jammed.
+bool after_jammed(const ShearJamming& leg) { return leg.reversals > 0 && leg.jammed_before; }
+bool unjams(const ShearJamming& leg) { return !(leg.by(JamSign::contacts) <= 0); }
+
+struct Unjamming {
+  int packings = 0, reversals = 0, unjam = 0;
+};
+
+Unjamming unjamming(double phi_max, double nu) {
+  Unjamming out;
+  for (const ShearJamming& leg : runs()) {
+    if (std::abs(leg.phi_max - phi_max) > 1e-4 || std::abs(leg.nu - nu) > 1e-4) continue;
+    out.packings += leg.reversals == 7 ? 1 : 0;
+    out.reversals += after_jammed(leg) ? 1 : 0;
+    out.unjam += after_jammed(leg) && unjams(leg) ? 1 : 0;
+  }
+  return out;
+}
+
+/// docs/memory.md has these numbers.
+TEST(MemoryData, ReversalsUnjamTheLessOftenTheDenser) {
+  struct Expected {
+    double phi_max, nu;
+    int packings, reversals, unjam;
+  };
+  for (const Expected& e : std::vector<Expected>{{0.82, 0.6585, 1, 11, 11},
+                                                 {0.82, 0.66, 3, 20, 20},
+                                                 {0.82, 0.6615, 3, 23, 17},
+                                                 {0.82, 0.662, 1, 7, 4},
+                                                 {0.82, 0.6625, 3, 21, 8},
+                                                 {0.82, 0.663, 1, 9, 0},
+                                                 {0.73, 0.6585, 0, 3, 3},
+                                                 {0.73, 0.66, 2, 15, 15},
+                                                 {0.73, 0.6615, 2, 15, 11},
+                                                 {0.73, 0.6625, 1, 7, 1},
+                                                 {0.68, 0.659, 2, 14, 14}}) {
+    const Unjamming found = unjamming(e.phi_max, e.nu);
+    EXPECT_EQ(found.packings, e.packings) << e.phi_max << ' ' << e.nu;
+    EXPECT_EQ(found.reversals, e.reversals) << e.phi_max << ' ' << e.nu;
+    EXPECT_EQ(found.unjam, e.unjam) << e.phi_max << ' ' << e.nu;
+  }
+}
+
+/// Slope over the legs of one packing's strain to jam again; 0 where it stays jammed, left out where it does
+/// not jam. NaN with fewer than five legs.
+double slope(const std::vector<std::pair<double, double>>& legs) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const auto& [leg, strain] : legs) {
+    n += 1;
+    x += leg;
+    y += strain;
+    xx += leg * leg;
+    xy += leg * strain;
+  }
+  return n < 5 ? std::nan("") : (n * xy - x * y) / (n * xx - x * x);
+}
+
+TEST(MemoryData, JammingAgainHasNoTrendOverFourCycles) {
+  std::map<std::tuple<std::string, double, double>, std::vector<std::pair<double, double>>> packings;
+  for (const ShearJamming& leg : runs())
+    if (after_jammed(leg) && std::isfinite(leg.by(JamSign::contacts)))
+      packings[{leg.group, leg.phi_max, leg.nu}].emplace_back(leg.reversals, leg.by(JamSign::contacts));
+  std::vector<double> slopes;
+  for (const auto& [packing, legs] : packings)
+    if (const double found = slope(legs); std::isfinite(found)) slopes.push_back(found);
+  double mean = 0;
+  for (const double s : slopes) mean += s / static_cast<double>(slopes.size());
+  const double error = deviation(slopes) / std::sqrt(static_cast<double>(slopes.size()));
+  EXPECT_EQ(slopes.size(), 19u);
+  EXPECT_NEAR(mean, 0.0000, 1e-4);
+  EXPECT_NEAR(error, 0.0019, 1e-4);
 }
 
 TEST(MemoryData, RelaxedSteadyStatesCeaseToPushWhereTheThesisSays) {
@@ -142,13 +224,6 @@ TEST(MemoryData, MoreCompressionAndMoreCyclesPackDenser) {
     last = mean_density(all, phi_max, 30);
   }
   EXPECT_NEAR(mean_density(all, 0.82, 100), 0.6686, 1e-4);  // the thesis has 0.6692
-}
-
-double deviation(const std::vector<double>& values) {
-  double mean = 0, square = 0;
-  for (const double v : values) mean += v / static_cast<double>(values.size());
-  for (const double v : values) square += (v - mean) * (v - mean);
-  return std::sqrt(square / static_cast<double>(values.size() - 1));
 }
 
 std::vector<double> last_cycles(const std::vector<CycleDensity>& all, double phi_max, const std::string& seed,
