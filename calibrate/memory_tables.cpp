@@ -82,6 +82,16 @@ void read_densities(const Record& table, std::size_t i, CycleDensity& c) {
   c.rows = static_cast<std::size_t>(table["rows"][i]);
 }
 
+/// What both tables of shear say of the packing that is sheared.
+template <class Run>
+void read_packing(const Record& table, std::size_t i, const std::filesystem::path& file, Run& run) {
+  run.group = seed_text(file, table["seed"][i]);
+  run.phi_max = table["phi_max"][i];
+  run.M = table["M"][i];
+  run.phi_J0 = {table["phi_J0"][i], table["phi_J0_error"][i]};
+  run.nu = table["nu"][i];
+}
+
 std::string record_of(const std::string& kind, double phi, const std::string& seed) {
   return kind + "-" + to_text(phi) + "-s" + seed;
 }
@@ -146,11 +156,7 @@ std::vector<ShearJamming> read_shear_jamming(const std::filesystem::path& file) 
   std::vector<ShearJamming> runs;
   for (std::size_t i = 0; i < table.rows(); ++i) {
     ShearJamming r;
-    r.group = seed_text(file, table["seed"][i]);
-    r.phi_max = table["phi_max"][i];
-    r.M = table["M"][i];
-    r.phi_J0 = {table["phi_J0"][i], table["phi_J0_error"][i]};
-    r.nu = table["nu"][i];
+    read_packing(table, i, file, r);
     r.test = record_of("shear-" + to_text(r.phi_max), r.nu, r.group);
     r.reversals = static_cast<std::size_t>(table["reversals"][i]);
     r.jammed_before = table["jammed_before"][i] != 0;
@@ -167,11 +173,7 @@ std::vector<RelaxedState> read_relaxed(const std::filesystem::path& file) {
   std::vector<RelaxedState> states;
   for (std::size_t i = 0; i < table.rows(); ++i) {
     RelaxedState s;
-    s.group = seed_text(file, table["seed"][i]);
-    s.phi_max = table["phi_max"][i];
-    s.M = table["M"][i];
-    s.phi_J0 = {table["phi_J0"][i], table["phi_J0_error"][i]};
-    s.nu = table["nu"][i];
+    read_packing(table, i, file, s);
     s.test = record_of("relaxed-" + to_text(s.phi_max), s.nu, s.group);
     s.eps_dev = table["eps_dev"][i];
     s.P_flow = table["P_flow"][i];
