@@ -13,6 +13,8 @@
 namespace grainlaw::report {
 namespace {
 
+constexpr double loosest_shown = 0.65;  ///< nu: below it nothing carries a load
+
 /// A test of grains and what the form says of it.
 struct Pair {
   const PredictedRun* law = nullptr;
@@ -43,10 +45,11 @@ Pair longest(const Inputs& inputs, const std::string& mode) {
   return pairs.empty() ? Pair{} : pairs[pairs.size() / 2];
 }
 
-/// C* where a packing or the law has no contacts is none.
+constexpr double loads = 1e-4;  ///< P* from which C* and s_dev of grains are more than noise
+
 double shown(const Record& record, const std::string& column, std::size_t row) {
   const bool needs_contacts = column == "s_dev" || column == "C_star";
-  return needs_contacts && !(record["P"][row] > 0) ? NAN : record[column][row];
+  return needs_contacts && !(record["P"][row] >= loads) ? NAN : record[column][row];
 }
 
 /// Rows of two segments over nu.
@@ -84,11 +87,8 @@ Panel cycles_panel(const Pair& pair, const std::string& column, Area area) {
         over_density(*pair.law->record, column, first, {cycle + ", minimal", Draw::line, shade, {}, {}}));
     if (first == last) break;
   }
-  if (column == "P") panel.x_range = {{0.65, 0.735}};
-  if (column == "C_star") {
-    panel.x_range = {{0.65, 0.735}};
-    panel.y_range = {{5, 9}};
-  }
+  const auto& nu = (*pair.law->record)["nu"];
+  panel.x_range = {{loosest_shown, *std::max_element(nu.begin(), nu.end())}};
   return panel;
 }
 

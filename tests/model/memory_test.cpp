@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "grainlaw/model/light/light_law.hpp"
+#include "grainlaw/model/predict.hpp"
 #include "grainlaw/model/start.hpp"
 #include "memory_fixture.hpp"
 
@@ -293,6 +294,26 @@ TEST(Memory, TangentThroughShearJamming) {
       EXPECT_NEAR(tangent.sigma_dev[0], (v_from.sigma_dev - v_down.sigma_dev) / v_step, 1e-5);
       EXPECT_NEAR(tangent.sigma_dev[1], (e_up.sigma_dev - e_down.sigma_dev) / (2 * step), 1e-5);
     }
+}
+
+TEST(Memory, AHoldOfNothingIsNone) {
+  const Path cycle = path_of(R"({"start": {"nu": 0.69}, "segments": [
+      {"mode": "d2", "amount": 0.3}, {"mode": "d2", "amount": -0.3}]})");
+  ParameterSet set = with_memory();
+  const auto run = [&](const ParameterSet& with) {
+    PredictOptions options;
+    options.form = Form::memory;
+    return predict(with, cycle, options).record;
+  };
+  const Record without = run(set);
+  set.memory->hold.emplace().value = 0.4;
+  EXPECT_NE(run(set)["F_dev"].back(), without["F_dev"].back());
+  set.memory->hold->value = 0;
+  const auto read = ParameterSet::read(Reader(set.to_json(), "written"));
+  const Record nothing = run(read);
+  for (const char* column : {"P", "sigma_dev", "F_dev"})
+    for (std::size_t row = 0; row < nothing.rows(); ++row)
+      EXPECT_EQ(nothing[column][row], without[column][row]) << column << ' ' << row;
 }
 
 TEST(Memory, StartsFromPressureOrJammingDensityOrCompression) {

@@ -142,6 +142,29 @@ TEST(Minimal, BelowTheShearJammingDensityNothingJams) {
   }
 }
 
+/// Group near_jamming stands in place of isotropic and shear, and only there.
+TEST(Minimal, NumbersNearJammingTakeThePlaceOfThoseOfTheWholeRange) {
+  const ParameterSet tables = near_jamming();
+  ParameterSet set = thesis();
+  set.memory = tables.memory;
+  const Record whole = predict_minimal(set, path_of(shear_cycle)).record;
+  set.near_jamming =
+      NearJammingLaws{tables.isotropic.at("iso"), tables.isotropic.at("d2"), *tables.shear->s_max,
+                      *tables.shear->beta_s,      *tables.shear->F_max,      *tables.shear->beta_F};
+  const auto again = ParameterSet::read(Reader(set.to_json(), "written"));
+  const Record near = predict_minimal(again, path_of(shear_cycle)).record,
+               expected = predict_minimal(tables, path_of(shear_cycle)).record;
+  for (const char* column : {"P", "sigma_dev", "F_dev", "C", "f_NR", "phi_J"})
+    for (std::size_t row = 0; row < near.rows(); ++row)
+      EXPECT_EQ(near[column][row], expected[column][row]) << column << ' ' << row;
+  EXPECT_GT(std::abs(whole["P"].back() - near["P"].back()), 1e-5);
+  const Path shear = path_of(R"({"start": {"nu": 0.7}, "segments": [{"mode": "d2", "amount": 0.1}]})");
+  EXPECT_EQ(predict(again, shear).record["P"].back(), predict(thesis(), shear).record["P"].back());
+  set.near_jamming->F_max.Q_v.value = std::nan("");
+  EXPECT_THAT(refusal([&] { minimal_laws(set); }),
+              HasSubstr("near_jamming.F_max.Q_v: must be a finite number"));
+}
+
 TEST(Minimal, WhatItCannotTakeIsRefused) {
   const auto refused = [](const std::string& path) { return refusal([&] { run(path); }); };
   const std::string shear = R"("segments": [{"mode": "d2", "amount": 0.1}]})";
