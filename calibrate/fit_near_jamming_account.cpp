@@ -118,7 +118,7 @@ std::optional<model::NearJammingLaws> near_jamming_laws(const Account& account, 
     if (!row) return std::nullopt;
     if (row->nu_c.value == account.memory->phi_SJ.value) {
       row->nu_c.source = "fit";
-      row->nu_c.note = "memory.phi_SJ";
+      row->nu_c.note = "phi_SJ of memory";
     }
     if (result["Q_max"].determined && row->Q_max.source == "assumed")
       row->Q_max.note = "held at 0, as in Table 5.2";

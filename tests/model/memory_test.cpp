@@ -16,7 +16,9 @@
 namespace grainlaw::model {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr double eps_c = 0.0423;
 
@@ -294,6 +296,16 @@ TEST(Memory, TangentThroughShearJamming) {
       EXPECT_NEAR(tangent.sigma_dev[0], (v_from.sigma_dev - v_down.sigma_dev) / v_step, 1e-5);
       EXPECT_NEAR(tangent.sigma_dev[1], (e_up.sigma_dev - e_down.sigma_dev) / (2 * step), 1e-5);
     }
+}
+
+/// What is said of P that drifts is true of Eq. 4.16 alone.
+TEST(Memory, ThatPDriftsIsNotSaidOfIt) {
+  const Path cycles = path_of(R"({"start": {"nu": 0.69}, "segments": [{"repeat": 3, "segments": [
+      {"mode": "d2", "amount": 0.05}, {"mode": "d2", "amount": -0.05}]}]})");
+  PredictOptions options;
+  EXPECT_THAT(predict(with_memory(), cycles, options).warnings, Contains(HasSubstr("restoring term")));
+  options.form = Form::memory;
+  EXPECT_THAT(predict(with_memory(), cycles, options).warnings, Not(Contains(HasSubstr("restoring term"))));
 }
 
 TEST(Memory, AHoldOfNothingIsNone) {
