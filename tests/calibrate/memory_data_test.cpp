@@ -53,12 +53,12 @@ TEST(MemoryData, LawsRefitted) {
   const MemoryFit fit = fit_memory(cycles(), runs(), thesis(), rest().by_pressure);
   EXPECT_NEAR(fit.phi_SJ.value, 0.6572, 1e-4);
   EXPECT_NEAR(fit.phi_SJ.error, 0.0002, 1e-4);
-  EXPECT_NEAR(fit.phi_SJ.by_over_compression.value, 0.6545, 1e-4);
-  EXPECT_FALSE(fit.phi_SJ.by_shear.known());  // on the bound that the loosest run that jams sets
-  expect_printed(fit.over_compression["alpha_max"], 0.0211, 1e-4);
-  expect_printed(fit.over_compression["alpha_phi"], 0.422, 5e-3);
-  expect_printed(fit.over_compression["mu"], 1.78, 5e-2);
-  expect_printed(fit.over_compression["beta"], 0.377, 5e-3);
+  EXPECT_FALSE(fit.phi_SJ.by_over_compression.known());  // where each packing alone has it, they do not agree
+  EXPECT_FALSE(fit.phi_SJ.by_shear.known());             // on the bound that the loosest run that jams sets
+  expect_printed(fit.over_compression["alpha_max"], 0.0199, 1e-4);
+  expect_printed(fit.over_compression["alpha_phi"], 0.399, 5e-3);
+  expect_printed(fit.over_compression["mu"], 1.63, 5e-2);
+  expect_printed(fit.over_compression["beta"], 0.383, 5e-3);
   expect_printed(fit.shear["alpha"], 1.52, 1e-2);
   expect_printed(fit.shear["eps0"], 0.113, 1e-3);
   expect_printed(fit.reversal["eps0_R"], 0.200, 1e-3);
@@ -93,10 +93,10 @@ MemoryFit shifted(double by) {
 
 TEST(MemoryData, TheSystematicErrorIsLargerThanTheScatter) {
   const MemoryFit high = shifted(1e-3), low = shifted(-1e-3);
-  EXPECT_NEAR(high.over_compression.value("alpha_phi"), 0.372, 5e-3);
-  EXPECT_NEAR(low.over_compression.value("alpha_phi"), 0.485, 5e-3);
-  EXPECT_NEAR(high.over_compression.value("alpha_max"), 0.0213, 2e-4);
-  EXPECT_NEAR(low.over_compression.value("alpha_max"), 0.0211, 2e-4);
+  EXPECT_NEAR(high.over_compression.value("alpha_phi"), 0.356, 5e-3);
+  EXPECT_NEAR(low.over_compression.value("alpha_phi"), 0.454, 5e-3);
+  EXPECT_NEAR(high.over_compression.value("alpha_max"), 0.0205, 2e-4);
+  EXPECT_NEAR(low.over_compression.value("alpha_max"), 0.0195, 2e-4);
   EXPECT_NEAR(high.shear.value("alpha"), 1.29, 1e-2);
   EXPECT_NEAR(low.shear.value("alpha"), 1.86, 1e-2);
   EXPECT_NEAR(high.reversal.value("phi_cr"), 0.6632, 1e-4);
@@ -314,7 +314,7 @@ TEST(MemoryData, ThreeAmplitudesAreEnoughForTheStrength) {
   });
   const MemoryFit fit = fit_memory(few, {}, thesis());
   EXPECT_TRUE(fit.over_compression["alpha_max"].determined);
-  EXPECT_LT(std::abs(fit.over_compression.value("alpha_max") - 0.0211),
+  EXPECT_LT(std::abs(fit.over_compression.value("alpha_max") - 0.0199),
             3 * *fit.over_compression["alpha_max"].stderr_);
   EXPECT_FALSE(fit.shear["eps0"].determined);  // no runs: held at the thesis's
 }
