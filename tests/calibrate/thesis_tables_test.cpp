@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -133,6 +134,36 @@ TEST(UniPressure, IsThatOfTable2_1UpTo075AndOfTable3_4OverAll) {
 TEST(UniPressure, ButIsoDoesNotDependOnTheRange) {
   const Mean near = pressure_of_unloading("iso", 0.75, "p0"), all = pressure_of_unloading("iso", 1, "p0");
   EXPECT_NEAR(near.value, all.value, 0.015 * all.value);
+}
+
+/// phi_c and phi_v of UNI from the unloading of one test over all its packings, each fitted alone from its
+/// own nu_c of the contacts; `moving`: with the rows whose E_k/E_p is above the limit of a state.
+Mean phi_c_of(const RecordFolder& folder, const std::string& test, bool moving) {
+  Selection selection;
+  if (moving) selection.Ek_over_Ep_max = std::numeric_limits<double>::infinity();
+  std::vector<double> values;
+  for (const TestRecord& record : folder.tests) {
+    if (record.test != test) continue;
+    Counted counted;
+    const PackingSeries series = unloading_branch(record, selection, counted);
+    values.push_back(fit_packing({series}, Points::rows, {}).rattlers.value("phi_c"));
+  }
+  return mean_of(values);
+}
+
+/// phi_c of UNI in Table 2.1 is 0.1507. The rattlers near jamming depend on the rate, and on whether rows
+/// that move too much to be states are read: at three times our rate, with them, 0.155.
+TEST(UniRattlers, AreThoseOfTable2_1AtThreeTimesOurRate) {
+  static const RecordFolder faster = read_records(GRAINLAW_DATA_DIR "/records/uni-rates");
+  const Mean slow = phi_c_of(records(), "uni-cycle", false);
+  const Mean slow_moving = phi_c_of(records(), "uni-cycle", true);
+  const Mean three = phi_c_of(faster, "uni-x3", true), ten = phi_c_of(faster, "uni-x10", true);
+  EXPECT_NEAR(slow.value, 0.134, 5e-4);
+  EXPECT_NEAR(slow_moving.value, 0.138, 5e-4);
+  EXPECT_NEAR(three.value, 0.1547, 5e-4);
+  EXPECT_NEAR(ten.value, 0.193, 1e-3);
+  EXPECT_LT(std::abs(three.value - 0.1507), 2 * three.error);
+  EXPECT_NEAR(phi_c_of(faster, "uni-x3", false).value, 0.137, 5e-4);
 }
 
 /// Mean over the densities of ours over the thesis's, per packing, of the rates of D2 fitted up to a strain,
