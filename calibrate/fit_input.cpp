@@ -15,6 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Fewer rows of a record that is cut short are nothing to fit or to compare with.
+constexpr std::size_t fewest_rows_cut_short = 10;
+
 /// What the fits read; a record may hold more.
 const std::vector<std::string> needed_columns{"segment", "eps_vol", "eps_dev", "nu",     "P",
                                               "s_dev",   "F_dev",   "C",       "C_star", "f_NR"};
@@ -38,37 +41,36 @@ void split_name(TestRecord& test) {
 
 /// Where the scene says how many rows a segment has, the table must have them all: one that was cut between
 /// two lines looks whole.
-void check_row_count(const Json& scene, const Path& path, const Record& rows, const fs::path& table) {
+void check_rows(const Json& scene, const Path& path, const Record& rows, const fs::path& dir) {
   if (!scene.contains("measure") || !scene["measure"].contains("rows")) return;
   dem::Scene wanted;
   wanted.path = path;
   wanted.measure.rows = scene["measure"]["rows"].get<std::int64_t>();
-  if (rows.rows() != wanted.record_rows())
-    throw Error(table.string(), "",
-                "must have " + std::to_string(wanted.record_rows()) + " rows as its scene says, got " +
-                    std::to_string(rows.rows()) + ": it is cut short or of another scene");
+  check_row_count(dir, rows.rows(), wanted.record_rows());
 }
 
 /// One row by linear response for each state that the scene asks for; a table of strains alone is of another
 /// kind, and so is one that the scene does not ask for.
-void check_moduli_count(const Json& scene, const std::optional<Record>& moduli, const fs::path& file) {
+void check_moduli_count(const Json& scene, const std::optional<Record>& moduli, const fs::path& file,
+                        bool ends_early) {
   const Json measure = scene.value("measure", Json::object());
   if (!measure.contains("moduli") || measure["moduli"].empty()) return;
   const std::size_t states = measure["moduli"].size();
+  if (!moduli && ends_early) return;  // no state may have come
   if (!moduli) throw Error(file.string(), "", "no such file, and the scene asks for moduli");
   const std::vector<double>& amplitude = (*moduli)["amplitude"];
   const auto rows = static_cast<std::size_t>(std::count(amplitude.begin(), amplitude.end(), 0.0));
-  if (rows != states && (rows > 0 || amplitude.empty()))
+  if (rows > states || (rows < states && !ends_early && (rows > 0 || amplitude.empty())))
     throw Error(file.string(), "",
                 "must have " + std::to_string(states) + " states as its scene says, got " +
                     std::to_string(rows) + ": it is cut short or of another scene");
 }
 
 /// Rows must say where on the path they belong.
-std::optional<Record> kept_moduli(const Json& scene, const fs::path& file) {
+std::optional<Record> kept_moduli(const Json& scene, const fs::path& file, bool ends_early) {
   std::optional<Record> moduli;
   if (fs::exists(file)) moduli = read_moduli(file);
-  check_moduli_count(scene, moduli, file);
+  check_moduli_count(scene, moduli, file, ends_early);
   if (!moduli) return moduli;
   for (const char* column : {"segment", "eps_dev", "backbone", "contacts"})
     if (!moduli->has(column)) throw Error(file.string(), column, "column is missing");
@@ -97,6 +99,23 @@ std::optional<StrainTensor> shear_axis_before(const Json& scene, const fs::path&
   return shear_axis((dir / preparation["snapshot"].get<std::string>()).parent_path());
 }
 
+/// Tells the path as far as the rows go.
+void shorten(TestRecord& test) {
+  const auto last = static_cast<std::size_t>(test.rows["segment"].back());
+  if (last >= test.legs.size()) return;  // read_record() says so
+  const Leg& leg = test.legs[last];
+  Segment& segment = test.path.segments[last];
+  const double eps_vol = test.rows["eps_vol"].back() - leg.eps_vol[0];
+  const double eps_dev = test.rows["eps_dev"].back() - leg.eps_dev[0];
+  test.path.segments.resize(last + 1);
+  if (leg.mode == Mode::iso || leg.mode == Mode::uni || leg.mode == Mode::d2 || leg.mode == Mode::d3) {
+    segment.to_nu = segment.to_eps_vol = segment.to_eps_dev = std::nullopt;
+    segment.amount = leg.mode == Mode::iso || leg.mode == Mode::uni ? eps_vol : eps_dev;
+    if (*segment.amount == 0) test.path.segments.pop_back();
+  }
+  test.legs = test.path.legs(test.nu_start);
+}
+
 TestRecord read_record(const fs::path& dir, Role role) {
   TestRecord test;
   test.name = dir.filename().string();
@@ -111,8 +130,9 @@ TestRecord read_record(const fs::path& dir, Role role) {
   test.mode = mode_of(test.path);
   test.sheared_along = shear_axis_before(json, dir);
   test.rows = Record::read_csv(table, needed_columns);
-  check_row_count(json, test.path, test.rows, table);
-  test.moduli = kept_moduli(json, dir / "moduli.csv");
+  test.cut_short = cut_short(dir);
+  check_rows(json, test.path, test.rows, dir);
+  test.moduli = kept_moduli(json, dir / "moduli.csv", !test.cut_short.empty());
   for (const char* column : {"segment", "eps_vol", "eps_dev", "nu", "P"}) {
     for (const double value : test.rows[column]) {
       if (std::isnan(value))
@@ -121,6 +141,7 @@ TestRecord read_record(const fs::path& dir, Role role) {
   }
   test.nu_start = test.rows["nu"].front() * std::exp(-test.rows["eps_vol"].front());
   test.legs = test.path.legs(test.nu_start);
+  if (!test.cut_short.empty()) shorten(test);
   for (const double segment : test.rows["segment"]) {
     if (segment < 0 || segment >= static_cast<double>(test.legs.size())) {
       throw Error(table.string(), "segment",
@@ -131,13 +152,18 @@ TestRecord read_record(const fs::path& dir, Role role) {
   return test;
 }
 
-/// Why a record is no matter for fits and predictions; empty if it is.
-std::string why_left_out(const fs::path& dir) {
-  const fs::path scene = dir / "scene.json", provenance = dir / "provenance.json";
+/// Why a record is no matter for fits and predictions; empty if it is. One that is cut short may be, as far
+/// as it goes; but what memory is measured by are whole histories.
+std::string why_left_out(const fs::path& dir, Role role) {
+  const fs::path scene = dir / "scene.json";
   Reader reader(load_json(scene), scene.string());
   if (Path::read(reader.object("path")).by_stress())
     return "its path is under stress control, and the law follows strains";
-  return fs::exists(provenance) ? cut_short(dir) : "";
+  const std::string why = cut_short(dir);
+  if (why.empty()) return "";
+  const std::size_t rows = Record::read_csv(dir / "record.csv", {"segment"}).rows();
+  if (role != Role::memory && rows >= fewest_rows_cut_short) return "";
+  return "cut short after " + std::to_string(rows) + " rows: " + why;
 }
 
 RecordFolder read_campaign(const fs::path& dir) {
@@ -153,7 +179,7 @@ RecordFolder read_campaign(const fs::path& dir) {
         out.left_out.push_back({name, test.role, "there is no record of it"});
         continue;
       }
-      if (const std::string why = why_left_out(record); !why.empty()) {
+      if (const std::string why = why_left_out(record, test.role); !why.empty()) {
         out.left_out.push_back({name, test.role, why});
         continue;
       }
@@ -182,7 +208,7 @@ RecordFolder read_folder(const fs::path& dir) {
   }
   std::sort(found.begin(), found.end());
   for (const fs::path& record : found) {
-    if (const std::string why = why_left_out(record); !why.empty())
+    if (const std::string why = why_left_out(record, Role::fit); !why.empty())
       out.left_out.push_back({record.filename().string(), Role::fit, why});
     else
       out.tests.push_back(read_record(record, Role::fit));

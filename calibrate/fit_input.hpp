@@ -35,6 +35,8 @@ struct TestRecord {
   /// from; none where it was not, or where these records are not beside it.
   std::optional<StrainTensor> sheared_along;
   Record rows;
+  /// Why it ends before its path did, which is then told as far as it goes; empty where it does not.
+  std::string cut_short;
   std::optional<Record> moduli;      ///< of states along the path, where moduli.csv is kept
   std::optional<RecordOrigin> from;  ///< none: a packing as prepared, or nothing says
 };

@@ -54,6 +54,11 @@ SeriesMean mean_over(const TestRecord& test, const std::string& column,
 
 std::string number(double value) { return to_text(value); }
 
+std::string cut_short_at(const TestRecord& test, const std::string& column, const std::string& what_lacks) {
+  return "it was cut short at " + column + " = " + number(test.rows[column].back()) + ", " + what_lacks +
+         ": " + test.cut_short;
+}
+
 }  // namespace
 
 PackingSeries unloading_leg(const TestRecord& test, std::size_t leg, const Selection& selection,
@@ -66,7 +71,11 @@ PackingSeries unloading_leg(const TestRecord& test, std::size_t leg, const Selec
     if (take) series.states.push_back(state_at(test, row));
     ++(take ? counted.rows : counted.left_out);
   }
-  if (counted.rows == 0)
+  const bool reached = leg + 1 < test.legs.size() || test.cut_short.empty();
+  if (!reached && test.rows["P"].back() >= selection.P_min) {
+    series.states.clear();
+    counted.reason = cut_short_at(test, "nu", "before its unloading came to P < " + number(selection.P_min));
+  } else if (counted.rows == 0)
     counted.reason = "no row of its unloading is jammed (P >= " + number(selection.P_min) + ")";
   return series;
 }
@@ -141,7 +150,11 @@ ShearCurve first_loading(const TestRecord& test, const std::string& quantity, co
   }
   const auto rows = static_cast<double>(counted.rows);
   curve.nu /= rows;
-  if (counted.rows < selection.loading_rows) {
+  const bool steady = !curve.strain.empty() && curve.strain.back() >= selection.steady_from;
+  if (!test.cut_short.empty() && !steady) {
+    counted.reason = cut_short_at(
+        test, "eps_dev", "and a rate takes a loading to |eps_dev| >= " + number(selection.steady_from));
+  } else if (counted.rows < selection.loading_rows) {
     counted.reason = "its first loading has only " + std::to_string(counted.rows) + " rows with " + quantity;
   } else if (P / rows < selection.P_min) {
     counted.reason = "it is not jammed throughout its first loading: mean P " + number(P / rows) + " < " +

@@ -62,17 +62,31 @@ void check_kept_record(const fs::path& dir, const Json& planned) {
       Record::read_csv(dir / file, {"row"});
     const bool all_met = !ends_early && !wanted.path.by_stress();  // else a state may never have come
     check_moduli(dir, wanted.measure.moduli.size(), all_met);
-    if (ends_early && record.rows() <= wanted.record_rows()) return;
-    if (record.rows() != wanted.record_rows())
-      throw Error(table, "",
-                  "must have " + std::to_string(wanted.record_rows()) + " rows, got " +
-                      std::to_string(record.rows()) + ": it is cut short or of another scene");
+    check_row_count(dir, record.rows(), wanted.record_rows());
   });
 }
 
 std::string cut_short(const fs::path& dir) {
+  if (!fs::exists(dir / "provenance.json")) return "";
   const Json provenance = load_json(dir / "provenance.json");
   return provenance.contains("cut_short") ? provenance["cut_short"].get<std::string>() : "";
+}
+
+void check_row_count(const fs::path& dir, std::size_t rows, std::size_t wanted) {
+  const std::string table = (dir / "record.csv").string();
+  if (cut_short(dir).empty()) {
+    if (rows == wanted) return;
+    throw Error(table, "",
+                "must have " + std::to_string(wanted) + " rows as its scene says, got " +
+                    std::to_string(rows) + ": it is cut short or of another scene");
+  }
+  const Json provenance = load_json(dir / "provenance.json");
+  const bool told = provenance.contains("rows");  // an earlier version did not tell
+  const std::size_t most = told ? provenance["rows"].get<std::size_t>() : wanted;
+  if (told ? rows == most : rows <= most) return;
+  throw Error(table, "",
+              "must have " + std::string(told ? "" : "at most ") + std::to_string(most) + " rows, got " +
+                  std::to_string(rows) + ": it is not the one that its provenance.json is of");
 }
 
 void check_kept_snapshots(const fs::path& dir) {

@@ -13,8 +13,12 @@ namespace grainlaw::calibrate {
 /// asks for) and of `scene`, the one that the campaign wants.
 void check_kept_record(const std::filesystem::path& dir, const Json& scene);
 
-/// Why the record in `dir` ends before its path does; empty where it does not.
+/// Why the record in `dir` ends before its path does; empty where it does not, or where nothing says so.
 std::string cut_short(const std::filesystem::path& dir);
+
+/// Throws Error unless a table of `rows` rows may be the record in `dir` of a path with `wanted` rows: all of
+/// them, or, of one that is cut short, as many as its provenance says.
+void check_row_count(const std::filesystem::path& dir, std::size_t rows, std::size_t wanted);
 
 /// Its snapshots must be readable, for another test to start from.
 void check_kept_snapshots(const std::filesystem::path& dir);

@@ -202,7 +202,7 @@ void Runner::check_origin(const Job& job) const {
   if (!job.needs) return;
   const std::string& producer = jobs_[*job.needs].record;
   const fs::path dir = folder_.record(producer);
-  const std::string why = fs::exists(dir / "provenance.json") ? cut_short(dir) : "";
+  const std::string why = cut_short(dir);
   if (!why.empty() && !fs::exists(dir / "snapshots.h5"))
     throw Error("starts from " + producer + ", which did not get there: " + why);
 }

@@ -25,6 +25,7 @@ namespace {
 
 constexpr double trial_seconds = 0.15;  // of steps, at each density
 constexpr std::uint64_t fewest_steps = 40, fewest_rows = 5;
+constexpr std::size_t moduli_grains = 1000;  // at most, where moduli are tried
 
 /// What is allocated, in bytes.
 double heap_bytes() {
@@ -264,8 +265,9 @@ std::vector<TrialCost> try_preparation(TrialPacking& packing, const Material& ma
   return trials;
 }
 
-std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::size_t grains,
-                                const std::vector<StageCost>& stages) {
+/// `few`: the same with few grains, for the moduli.
+std::vector<TrialCost> try_path(TrialPacking& packing, TrialPacking& few, const Scene& scene,
+                                std::size_t grains, const std::vector<StageCost>& stages) {
   double low = 1, high = 0;
   for (const StageCost& cost : stages)
     if (cost.stage.segment)
@@ -283,7 +285,10 @@ std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::
     Trial trial(scene.material, flowing.state(), main_stage(stages, true).stage);
     trial.steps();
     trial.rows(scene.measure.observe);
-    if (!scene.measure.moduli.empty()) trial.moduli(packing.base(), grains);
+    if (!scene.measure.moduli.empty()) {
+      few.compress_to(nu);
+      trial.moduli(few.base(), grains);
+    }
     trials.push_back(trial.cost());
   }
   return trials;
@@ -330,10 +335,12 @@ SceneCost cost_of(const Scene& scene) {
   const State start = start_of(scene);
   std::vector<StageCost> stages = planned(scene, start);
   const auto* own = std::get_if<NewPacking>(&scene.preparation);
-  TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
+  const NewPacking like = own != nullptr ? *own : NewPacking{};
+  TrialPacking packing(scene.material, start.count(), like);
+  TrialPacking few(scene.material, std::min(start.count(), moduli_grains), like);
   std::vector<TrialCost> prepared;
   if (own != nullptr) prepared = try_preparation(packing, scene.material, stages);
-  const std::vector<TrialCost> path = try_path(packing, scene, start.count(), stages);
+  const std::vector<TrialCost> path = try_path(packing, few, scene, start.count(), stages);
   const double grains = static_cast<double>(start.count());
   SceneCost cost;
   cost.grains = start.count();

@@ -242,6 +242,7 @@ void ElementTest::write_record(const RunSummary& summary) const {
   provenance.time_step = longest_.path;
   provenance.warnings = summary.warnings;
   provenance.cut_short = summary.cut_short;
+  provenance.rows = recorder_.record().rows();
   write_file(out_dir_ / "provenance.json", provenance.to_json().dump(2) + "\n");
   for (const auto& table : recorder_.tables()) table.rows.write_csv(out_dir_ / table.file);
   if (recorder_.moduli().rows() > 0) recorder_.moduli().write_csv(out_dir_ / ModuliWriter::file);

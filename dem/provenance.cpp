@@ -60,7 +60,9 @@ Json Provenance::to_json() const {
             {"k_star_kPa", k_star_kPa},
             {"time_step", time_step},
             {"warnings", warnings}};
-  if (!cut_short.empty()) json["cut_short"] = cut_short;
+  if (cut_short.empty()) return json;
+  json["cut_short"] = cut_short;
+  json["rows"] = rows;
   return json;
 }
 

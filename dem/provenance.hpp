@@ -26,6 +26,7 @@ struct Provenance {
   std::vector<std::string> warnings;
   /// A sentence, where the path could not be followed to its end: the record has the rows up to there.
   std::string cut_short;
+  std::size_t rows = 0;  ///< of that record; only of one that is cut short
 
   /// All that is known when a test begins; `started` is now. The engine adds the effort at the end.
   static Provenance begin(const Scene& scene);

@@ -12,9 +12,10 @@ namespace grainlaw::dem {
 
 namespace {
 
-constexpr double trial_step = 0.1;              // over t_c, while trial packings are made
-constexpr std::size_t whole_trial = 1500;       // packings of up to so many grains are tried as they are
-constexpr std::size_t base_grains = 1000;       // larger ones are made of copies of one of about this size
+constexpr double trial_step = 0.1;  // over t_c, while trial packings are made
+// Packings of up to so many grains are tried as they are; larger ones are made of copies of one of at most
+// base_grains. In copies of few grains the lists live too long: the fastest of few is slower than of many.
+constexpr std::size_t whole_trial = 10'000, base_grains = 4000;
 constexpr std::size_t largest_trial = 200'000;  // beyond, a grain costs the same
 
 /// A packing beside itself, `times` along each axis.

@@ -112,6 +112,26 @@ TEST_F(RunCampaign, ARecordThatWasCutShortIsKept) {
   EXPECT_EQ(run_campaign(campaign, open(CampaignFolder::Use::resume), options()).reused, 6u);
 }
 
+TEST_F(RunCampaign, ARecordThatWasCutShortHasTheRowsItSays) {
+  auto o = options();
+  o.run_test = [&](const dem::Scene& scene, const fs::path& part, const dem::RunHooks&) {
+    auto summary = write_record(scene, part);
+    Record few(record_columns());
+    few.append(std::vector<double>(record_columns().size(), 0.5));
+    few.write_csv(part / "record.csv");
+    write_file(part / "provenance.json", R"({"cut_short": "the target is out of reach", "rows": 2})");
+    return summary;
+  };
+  run_campaign(campaign, open(), o);
+  try {
+    run_campaign(campaign, open(CampaignFolder::Use::resume), options());
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("must have 2 rows, got 1"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("to have it made again"));
+  }
+}
+
 TEST_F(RunCampaign, TestsThatStartWhereNobodyCameSayWhy) {
   auto o = options();
   o.run_test = [&](const dem::Scene& scene, const fs::path& part, const dem::RunHooks&) {
@@ -360,7 +380,7 @@ TEST_F(RunCampaign, AKeptRecordMustBeWholeAndOfItsScene) {
               AllOf(HasSubstr("iso-s2/record.csv: no such file"),
                     HasSubstr("; remove " + (records / "iso-s2").string())));
   EXPECT_THAT(refusal([&] { cut("d2-0.7-s1/record.csv", 2000); }),
-              AllOf(HasSubstr("d2-0.7-s1/record.csv: must have 101 rows, got"), HasSubstr("; remove ")));
+              AllOf(HasSubstr("d2-0.7-s1/record.csv: must have 101 rows as its scene says, got"), HasSubstr("; remove ")));
   EXPECT_THAT(refusal([&] { write_file(records / "d2-0.7-s1/record.csv", "nu,P\n0.5,nan\n"); }),
               HasSubstr("d2-0.7-s1/record.csv"));
   EXPECT_THAT(refusal([&] {
