@@ -117,7 +117,7 @@ class Calibration {
     calibrate::FitOutput fitted;
     terminal_.draw("fitting");
     times_.measure("fit", [&] {
-      fitted = calibrate::fit_records(folder_.dir(), find_thesis(campaign_.material.w));
+      fitted = calibrate::fit_records(folder_.dir(), find_thesis(campaign_.material.w), {}, memory_sources());
       write_file(folder_.dir() / "parameters.json", fitted.parameters.to_json().dump(2) + "\n");
       fitted.write_account(folder_.dir());
     });

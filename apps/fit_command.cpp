@@ -21,7 +21,7 @@ namespace grainlaw::apps {
 namespace {
 
 struct Arguments {
-  std::string dir, output, fits;
+  std::string dir, output, fits, memory;
 };
 
 namespace fs = std::filesystem;
@@ -55,7 +55,10 @@ int run(const Arguments& arguments) {
   if (!fits.empty() && fs::absolute(fits).lexically_normal() == fs::absolute(output).lexically_normal())
     throw Error("", "--fits", "must be another file than -o, got " + fits.string());
   const auto lock = lock_of(arguments);
-  const calibrate::FitOutput fitted = calibrate::fit_records(dir, find_thesis(size_ratio_of_records(dir)));
+  if (!arguments.memory.empty() && !fs::is_directory(arguments.memory))
+    throw Error("", "--memory", "must be a directory with over_compression.csv, got " + arguments.memory);
+  const calibrate::FitOutput fitted = calibrate::fit_records(dir, find_thesis(size_ratio_of_records(dir)), {},
+                                                             memory_sources(arguments.memory));
   write_file(output, fitted.parameters.to_json().dump(2) + "\n");
   if (arguments.output.empty() && arguments.fits.empty())
     fitted.write_account(dir);
@@ -79,7 +82,15 @@ Action add_fit(CLI::App& program) {
       ->type_name("FILE");
   command->add_option("--fits", arguments->fits, "every fit with its data, curve, error, residual and exit")
       ->type_name("FILE");
-  command->footer("Example:\n  grainlaw fit out/quick -o parameters.json --fits fits.json");
+  command
+      ->add_option("--memory", arguments->memory,
+                   "directory with tables of memory of the same material (over_compression.csv, "
+                   "shear_jamming.csv, relaxed.csv, tapped.csv), read as tests of role memory are")
+      ->type_name("DIR");
+  command->footer(
+      "Examples:\n"
+      "  grainlaw fit out/quick -o parameters.json --fits fits.json\n"
+      "  grainlaw fit data/records/base --memory data/memory -o parameters.json");
   return [arguments] { return run(*arguments); };
 }
 

@@ -58,6 +58,10 @@ fs::path find_thesis(double w) {
   return fs::is_regular_file(own, code) ? own : main_set;
 }
 
+calibrate::MemorySources memory_sources(const fs::path& tables) {
+  return {find_data("thesis/near-jamming.json"), tables};
+}
+
 double size_ratio_of_records(const fs::path& dir) {
   const fs::path records = fs::is_directory(dir / "records") ? dir / "records" : dir;
   if (!fs::is_directory(records)) throw Error(dir.string(), "", "no such directory");

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "grainlaw/calibrate/fit_records.hpp"
+
 namespace grainlaw::apps {
 
 /// A file of data/ ("campaigns/quick.json"): in ./data, in the data/ of the source tree that the program was
@@ -17,6 +19,10 @@ std::string program_name();
 /// The thesis's parameter set to hold beside fits of a material of this w = r_max/r_min: the one for the same
 /// w (thesis/w-W.json) if there is one, else thesis/parameters.json (w = 3).
 std::filesystem::path find_thesis(double w);
+
+/// What the fits of memory read besides records: chapter 5's tables of the thesis, and our own of `tables`
+/// (a directory; empty: none).
+calibrate::MemorySources memory_sources(const std::filesystem::path& tables = {});
 
 /// w of the records in `dir` (a campaign's output directory or a directory of records): that of the first
 /// one. Throws Error if there is none.

@@ -7,6 +7,7 @@
 
 #include "grainlaw/calibrate/fit_memory_account.hpp"
 #include "grainlaw/calibrate/fit_moduli_account.hpp"
+#include "grainlaw/calibrate/fit_near_jamming_account.hpp"
 #include "grainlaw/calibrate/fit_volumetric_account.hpp"
 #include "grainlaw/element/error.hpp"
 
@@ -42,16 +43,6 @@ Pool pool_of(const RecordFolder& folder, const std::string& mode, Role role, con
     pool.series.push_back(std::move(series));
   }
   return pool;
-}
-
-/// C over nu by the fitted contact and rattler laws: what the pressure law needs for its curve.
-std::function<double(double)> coordination_of(const PackingFit& fit) {
-  if (!fit.contacts.ran || !fit.rattlers.ran) return {};
-  return [contacts = fit.contacts_law.law, rattlers = fit.rattlers_law.law, c = fit.contacts.values(),
-          r = fit.rattlers.values()](double nu) {
-    const FitPoint at{nu, 0, 0, 0};
-    return (1 - rattlers(r, at, {})) * contacts(c, at, {});
-  };
 }
 
 std::size_t states_in(const Pool& pool) {
@@ -278,7 +269,8 @@ void fit_density(Account& account, const std::string& mode, ShearQuantity quanti
 
 }  // namespace
 
-Account fit_all(const RecordFolder& folder, const Reference& reference, const Selection& selection) {
+Account fit_all(const RecordFolder& folder, const Reference& reference, const Reference& near_jamming,
+                const MeasuredMemory& measured, const Selection& selection) {
   Account account;
   account.left_out = folder.left_out;
   account.narrow_P_min = narrow_pressure * selection.P_min;
@@ -308,7 +300,8 @@ Account fit_all(const RecordFolder& folder, const Reference& reference, const Se
   }
   fit_moduli_of(account, folder, reference);
   fit_volumetric_of(account, folder, selection);
-  fit_memory_of(account, folder, reference, selection);
+  fit_memory_of(account, folder, reference, measured, selection);
+  fit_near_jamming_of(account, folder, near_jamming, selection);
   return account;
 }
 

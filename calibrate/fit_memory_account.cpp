@@ -120,6 +120,25 @@ void read_shear(Account& account, const RecordFolder& folder, const Selection& s
   }
 }
 
+/// False where the branches cannot be extrapolated.
+bool read_tests(Account& account, const RecordFolder& folder, const Selection& selection) {
+  const KnownValues laws = branch_laws(account.packing.at("iso"));
+  if (!complete(laws)) {
+    account.left_out.push_back(
+        {"memory", Role::memory, "its branches need the laws of isotropic.iso, which are open"});
+    return false;
+  }
+  read_cycles(account, folder, laws, selection);
+  read_tapped(account, folder, laws, selection);
+  read_shear(account, folder, selection);
+  return true;
+}
+
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
 FitEntry over_compression_entry(const MemoryFit& fit, const Account& account, const Selection& selection) {
   FitEntry entry;
   entry.name = "memory.phi_J";
@@ -241,18 +260,15 @@ Json tapped_json(const std::vector<TappedDensity>& packings) {
 }  // namespace
 
 void fit_memory_of(Account& account, const RecordFolder& folder, const Reference& reference,
-                   const Selection& selection) {
+                   const MeasuredMemory& measured, const Selection& selection) {
   const auto remembers = [](const TestRecord& test) { return test.role == Role::memory; };
-  if (std::none_of(folder.tests.begin(), folder.tests.end(), remembers)) return;
-  const KnownValues laws = branch_laws(account.packing.at("iso"));
-  if (!complete(laws)) {
-    account.left_out.push_back(
-        {"memory", Role::memory, "its branches need the laws of isotropic.iso, which are open"});
-    return;
-  }
-  read_cycles(account, folder, laws, selection);
-  read_tapped(account, folder, laws, selection);
-  read_shear(account, folder, selection);
+  const bool any_test = std::any_of(folder.tests.begin(), folder.tests.end(), remembers);
+  if (!any_test && !measured.any()) return;
+  if (any_test && !read_tests(account, folder, selection)) return;
+  append(account.cycles, measured.cycles);
+  append(account.shear_jammings, measured.shear_jammings);
+  append(account.relaxed, measured.relaxed);
+  append(account.tapped, measured.tapped);
   account.relaxed_limit = relaxed_limit(account.relaxed, selection);
   account.memory = fit_memory(account.cycles, account.shear_jammings, reference.memory_values(),
                               account.relaxed_limit.by_pressure);

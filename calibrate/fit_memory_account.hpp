@@ -8,11 +8,11 @@
 namespace grainlaw::calibrate {
 
 /// Fits group memory to the tests of role memory: cycles of iso, and d2 from a state on the unloading of one
-/// of these; nothing where no test has that role. Relaxed states along d2 tell phi_SJ, too; unloadings of
-/// tapped packings are measured, and enter no parameter. Others of that role are listed as left out. Needs
-/// account.packing of iso, at whose laws branches are extrapolated.
+/// of these, and to what is `measured` besides; nothing where there is neither. Relaxed states along d2 tell
+/// phi_SJ, too; unloadings of tapped packings are measured, and enter no parameter. Others of that role are
+/// listed as left out. Needs account.packing of iso, at whose laws branches are extrapolated.
 void fit_memory_of(Account& account, const RecordFolder& folder, const Reference& reference,
-                   const Selection& selection);
+                   const MeasuredMemory& measured, const Selection& selection);
 
 /// What stands under `memory` in fits.json: the growth laws compared, which parameters are entangled, how far
 /// the signs of jamming agree, the relaxed states with the phi_SJ of the steady ones, and the tapped

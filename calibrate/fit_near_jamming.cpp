@@ -140,10 +140,10 @@ NearJammingData near_jamming_data(const std::vector<TestRecord>& tests,
 NearJammingFit fit_near_jamming(const NearJammingData& data, const KnownValue& phi_SJ,
                                 const NearJammingKnown& known) {
   NearJammingFit out;
-  out.isotropic = fit_packing(data.unloading, Points::rows, known.packing);
-  out.flowing = fit_packing(data.flowing, Points::runs, known.packing);
-  out.resting = fit_packing(data.resting, Points::runs, known.packing);
-  out.flowing_from_phi_SJ = packing_from(data.flowing, phi_SJ, known.packing);
+  out.isotropic = fit_packing(data.unloading, Points::rows, known.isotropic);
+  out.flowing = fit_packing(data.flowing, Points::runs, known.sheared);
+  out.resting = fit_packing(data.resting, Points::runs, known.sheared);
+  out.flowing_from_phi_SJ = packing_from(data.flowing, phi_SJ, known.sheared);
   for (const ShearQuantity quantity : shear_quantities) {
     const auto values = data.runs.find(quantity);
     const auto held = known.shear.find(quantity);

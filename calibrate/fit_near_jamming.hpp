@@ -40,9 +40,9 @@ NearJammingData near_jamming_data(const std::vector<TestRecord>& tests,
                                   const std::vector<RelaxedState>& rests, double nu_max,
                                   const Selection& selection);
 
-/// What to hold where the data do not tell: numbers of Table 5.1 (of both columns), and Table 5.2.
+/// What to hold where the data do not tell: numbers of Table 5.1, and Table 5.2.
 struct NearJammingKnown {
-  KnownValues packing;
+  KnownValues isotropic, sheared;  ///< both columns
   std::map<ShearQuantity, KnownValues> shear;
 };
 

@@ -143,6 +143,15 @@ std::vector<PackingSeries> near_jamming(const std::vector<PackingSeries>& series
   return near;
 }
 
+std::function<double(double)> coordination_of(const PackingFit& fit) {
+  if (!fit.contacts.ran || !fit.rattlers.ran) return {};
+  return [contacts = fit.contacts_law.law, rattlers = fit.rattlers_law.law, c = fit.contacts.values(),
+          r = fit.rattlers.values()](double nu) {
+    const FitPoint at{nu, 0, 0, 0};
+    return (1 - rattlers(r, at, {})) * contacts(c, at, {});
+  };
+}
+
 PackingFit fit_packing(const std::vector<PackingSeries>& series, Points points, const KnownValues& known) {
   PackingFit out;
   out.contacts_law = contacts_problem(series, points, known);

@@ -2,6 +2,7 @@
 // Eq. 2.14. One row of Table 2.1 (isotropic.MODE of a parameter set) from measured states of one mode.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -68,6 +69,10 @@ struct PackingFit {
   FitResult contacts, contacts_free_C0, rattlers, pressure;
   FitProblem contacts_law, contacts_free_C0_law, rattlers_law, pressure_law;  ///< as fitted, with their data
 };
+
+/// C over nu by the fitted contact and rattler laws: what the pressure law needs for its curve. Empty where
+/// they were not fitted.
+std::function<double(double)> coordination_of(const PackingFit& fit);
 
 /// All of them; never throws for want of data, see FitEstimate::determined.
 PackingFit fit_packing(const std::vector<PackingSeries>& series, Points points, const KnownValues& known);

@@ -3,6 +3,7 @@
 #include "grainlaw/calibrate/fit_account.hpp"
 #include "grainlaw/calibrate/fit_checks.hpp"
 #include "grainlaw/calibrate/fit_memory_numbers.hpp"
+#include "grainlaw/calibrate/fit_near_jamming_account.hpp"
 #include "grainlaw/calibrate/fit_parameters.hpp"
 #include "grainlaw/calibrate/memory_tables.hpp"
 #include "grainlaw/element/error.hpp"
@@ -77,6 +78,23 @@ std::optional<model::ModuliLaws> moduli(const Account& account, const Reference&
   return group;
 }
 
+Reference reference_of(const std::filesystem::path& thesis, const Material& material) {
+  std::optional<model::ParameterSet> set;
+  if (!thesis.empty()) set = model::ParameterSet::load(thesis);
+  return Reference(set, material);
+}
+
+MeasuredMemory read_tables(const std::filesystem::path& dir) {
+  MeasuredMemory measured;
+  if (dir.empty()) return measured;
+  const auto has = [&](const char* name) { return std::filesystem::exists(dir / name); };
+  measured.cycles = read_over_compression(dir / "over_compression.csv");
+  if (has("shear_jamming.csv")) measured.shear_jammings = read_shear_jamming(dir / "shear_jamming.csv");
+  if (has("relaxed.csv")) measured.relaxed = read_relaxed(dir / "relaxed.csv");
+  if (has("tapped.csv")) measured.tapped = read_tapped(dir / "tapped.csv");
+  return measured;
+}
+
 }  // namespace
 
 void FitOutput::write_account(const std::filesystem::path& dir) const {
@@ -88,15 +106,14 @@ void FitOutput::write_account(const std::filesystem::path& dir) const {
 }
 
 FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::path& thesis,
-                      const Selection& selection) {
+                      const Selection& selection, const MemorySources& memory) {
   const RecordFolder folder = read_records(dir);
-  std::optional<model::ParameterSet> set;
-  if (!thesis.empty()) set = model::ParameterSet::load(thesis);
   FitOutput out;
   out.parameters.name = folder.name;
   out.parameters.material = common_material(folder);
-  const Reference reference(set, out.parameters.material);
-  const Account account = fit_all(folder, reference, selection);
+  const Reference reference = reference_of(thesis, out.parameters.material),
+                  near_jamming = reference_of(memory.near_jamming, out.parameters.material);
+  const Account account = fit_all(folder, reference, near_jamming, read_tables(memory.tables), selection);
 
   for (const auto& [mode, fit] : account.packing) {
     const auto row = packing_law(fit, reference.packing(mode), reference.thesis_packing(mode), reference);
@@ -104,6 +121,7 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
   }
   out.parameters.shear = shear_laws(account, "d2", reference);
   if (account.density.contains("d3")) out.parameters.shear_axial = shear_laws(account, "d3", reference);
+  out.parameters.near_jamming = near_jamming_laws(account, near_jamming);
   out.parameters.moduli = moduli(account, reference);
   if (account.volumetric) out.parameters.volumetric = volumetric_laws(*account.volumetric, reference);
   if (!out.parameters.volumetric && out.parameters.shear) out.parameters.volumetric = usual_volumetric_laws();

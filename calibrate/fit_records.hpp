@@ -23,12 +23,21 @@ struct FitOutput {
   void write_account(const std::filesystem::path& dir) const;
 };
 
+/// What the fits of groups memory and near_jamming read besides the records.
+struct MemorySources {
+  /// Tables 5.1 and 5.2 of the thesis as a parameter set, used as `thesis` is; empty: none.
+  std::filesystem::path near_jamming;
+  /// A directory with over_compression.csv and, where they are there, shear_jamming.csv, relaxed.csv and
+  /// tapped.csv, of the same material: they count as tests of role memory. Empty: none.
+  std::filesystem::path tables;
+};
+
 /// Fits all records of `dir`: the output directory of a campaign (campaign.json says each test's role), or
 /// any directory of records (all of role fit). `thesis` is the thesis's parameter set: its values stand
 /// beside the fitted ones if it is of the same w, replace what the data leave open, and fill the groups
 /// moduli and memory; with an empty path there are none of these. Throws Error for a directory without
-/// records, a record that cannot be read, records of different materials.
+/// records, a record that cannot be read, records of different materials, tables that cannot be read.
 FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::path& thesis = {},
-                      const Selection& selection = {});
+                      const Selection& selection = {}, const MemorySources& memory = {});
 
 }  // namespace grainlaw::calibrate

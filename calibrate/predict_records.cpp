@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "grainlaw/calibrate/fit_input.hpp"
+#include "grainlaw/calibrate/memory_tapping.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/model/predict.hpp"
+#include "grainlaw/model/predict_minimal.hpp"
 
 namespace grainlaw::calibrate {
 namespace {
@@ -75,17 +78,33 @@ std::string in_words(const model::Status& status) {
   return model::name_of(status.code) + (status.message.empty() ? "" : ": " + status.message);
 }
 
-Json predict_one(const TestRecord& test, const model::Choice& choice, const model::ParameterSet& parameters,
-                 const fs::path& dir) {
-  Json json{{"test", test.name}, {"mode", test.mode}, {"seed", nullptr}, {"form", model::name_of(choice)}};
+/// One form of the law, as it follows a path.
+struct Predictor {
+  std::string form;
+  std::function<model::Prediction(const Path&, const std::vector<model::Sample>&)> predict;
+};
+
+Predictor integrated(const model::Choice& choice, const model::ParameterSet& parameters) {
+  return {model::name_of(choice), [&parameters, choice](const Path& path, const auto& samples) {
+            model::PredictOptions options;
+            options.form = choice.form;
+            options.terms = choice.terms;
+            return model::predict(parameters, path, samples, options);
+          }};
+}
+
+Predictor minimal(const model::ParameterSet& parameters) {
+  return {model::minimal_name, [&parameters](const Path& path, const auto& samples) {
+            return model::predict_minimal(parameters, path, samples);
+          }};
+}
+
+Json predict_one(const TestRecord& test, const Path& path, const Predictor& law, const fs::path& dir) {
+  Json json{{"test", test.name}, {"mode", test.mode}, {"seed", nullptr}, {"form", law.form}};
   if (test.seed.find_first_not_of("0123456789") == std::string::npos) json["seed"] = std::stoll(test.seed);
   model::Prediction prediction;
   try {
-    const Path path = path_of(test);
-    model::PredictOptions options;
-    options.form = choice.form;
-    options.terms = choice.terms;
-    prediction = model::predict(parameters, path, model::samples_of(test.rows, path, test.nu_start), options);
+    prediction = law.predict(path, model::samples_of(test.rows, path, test.nu_start));
     json["status"] = in_words(prediction.status);
   } catch (const Error& error) {
     // A path that the law cannot take, or a group that the set lacks, is a finding about this form, not the
@@ -100,10 +119,45 @@ Json predict_one(const TestRecord& test, const model::Choice& choice, const mode
   json["file"] = nullptr;
   json["record"] = fs::relative(test.dir / "record.csv", dir).generic_string();
   if (!walked) return json;
-  const fs::path file = fs::path("predictions") / (test.name + "." + model::name_of(choice) + ".csv");
+  const fs::path file = fs::path("predictions") / (test.name + "." + law.form + ".csv");
   prediction.record.write_csv(dir / file);
   json["file"] = file.generic_string();
   return json;
+}
+
+/// The largest volume fraction of the one compression on whose way back this packing of role memory was taken
+/// up, or nothing where it starts as prepared; none where its past is another.
+std::optional<Start> past_of(const RecordFolder& folder, const TestRecord& test) {
+  Start start;
+  start.nu = test.nu_start;
+  if (!test.from) return start;
+  for (const TestRecord& origin : folder.tests) {
+    if (origin.name != test.from->record || origin.sheared_along) continue;
+    std::size_t compressions = 0;
+    for (std::size_t leg = 0; leg <= test.from->leg && leg < origin.legs.size(); ++leg)
+      compressions += origin.legs[leg].eps_vol[1] > origin.legs[leg].eps_vol[0] ? 1 : 0;
+    if (compressions > 1) return std::nullopt;
+    if (compressions == 1) start.phi_max = largest_nu(origin, test.from->leg);
+    return start;
+  }
+  return std::nullopt;
+}
+
+/// Fig. 5.4: over-compression and shear of role memory by the minimal form, from what the campaign did to
+/// their packings before.
+Json predict_memory(const RecordFolder& folder, const model::ParameterSet& parameters, const fs::path& dir) {
+  Json predictions = Json::array();
+  if (!parameters.memory || !parameters.near_jamming) return predictions;
+  for (const TestRecord& test : folder.tests) {
+    const bool takes = (test.mode == "iso" || test.mode == "d2") && !test.sheared_along;
+    if (test.role != Role::memory || !takes) continue;
+    const auto start = past_of(folder, test);
+    if (!start) continue;
+    Path path = test.path;
+    path.start = *start;
+    predictions.push_back(predict_one(test, path, minimal(parameters), dir));
+  }
+  return predictions;
 }
 
 }  // namespace
@@ -137,9 +191,13 @@ Json predict_records(const fs::path& dir, const model::ParameterSet& parameters)
   for (const TestRecord& test : folder.tests) {
     if (test.role != Role::predict) continue;
     for (const model::Choice& choice : choices_for(test, parameters))
-      predictions.push_back(predict_one(test, choice, parameters, dir));
+      predictions.push_back(predict_one(test, path_of(test), integrated(choice, parameters), dir));
+    if (parameters.memory && parameters.near_jamming)
+      predictions.push_back(predict_one(test, path_of(test), minimal(parameters), dir));
   }
-  Json out{{"parameters_digest", digest(parameters.to_json().dump(2) + "\n")}, {"predictions", predictions}};
+  Json out{{"parameters_digest", digest(parameters.to_json().dump(2) + "\n")},
+           {"predictions", predictions},
+           {"memory", predict_memory(folder, parameters, dir)}};
   write_file(dir / "predictions.json", out.dump(2) + "\n");
   return out;
 }

@@ -13,7 +13,7 @@ foreach(room element dem model calibrate)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/grainlaw
             FILES_MATCHING PATTERN *.hpp
             PATTERN snapshot_hdf5.hpp EXCLUDE  # private: needs HDF5's headers
-            PATTERN *-inl.hpp EXCLUDE)         # private: parts of a kernel's source
+            PATTERN four-inl.hpp EXCLUDE)      # private: part of the kernels' source
   endif()
 endforeach()
 if(TARGET grainlaw_model)

@@ -30,9 +30,9 @@ struct ListReach {
   Mat3 deformation;       ///< E, of the box since the list was made, at the end of the step
 };
 
-/// From the forces at time n: takes the velocity from n - 1/2 to n + 1/2, moves the grains with it and with
-/// the box, and predicts the velocity at n + 1. Returns the largest |x - E X|^2 - s^2 of a grain, mm^2;
-/// not a number if the place of any grain is not finite.
+/// From the forces at time n, which it uses up and leaves at zero: takes the velocity from n - 1/2 to n +
+/// 1/2, moves the grains with it and with the box, and predicts the velocity at n + 1. Returns the largest |x
+/// - E X|^2 - s^2 of a grain, mm^2; not a number if the place of any grain is not finite.
 double advance(const Stride& stride, const ListReach& list, Grains& grains);
 /// The same for grains first ... last - 1 alone.
 double advance(const Stride& stride, const ListReach& list, std::size_t first, std::size_t last,

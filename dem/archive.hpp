@@ -66,8 +66,8 @@ class ArchiveWriter {
     else
       T::keep(value, *this);
   }
-  template <class T>
-  void put(const std::vector<T>& list) {
+  template <class T, class A>
+  void put(const std::vector<T, A>& list) {
     put(std::uint64_t{list.size()});
     if constexpr (IsFlat<T>::value)
       bytes(list.data(), list.size() * sizeof(T));
@@ -111,8 +111,8 @@ class ArchiveReader {
     else
       T::keep(value, *this);
   }
-  template <class T>
-  void get(std::vector<T>& list) {
+  template <class T, class A>
+  void get(std::vector<T, A>& list) {
     list.resize(count(IsFlat<T>::value ? sizeof(T) : 1));
     if constexpr (IsFlat<T>::value)
       bytes(list.data(), list.size() * sizeof(T));

@@ -32,12 +32,12 @@ class ContactHessian {
   const std::vector<Sym6>& diagonal() const { return diagonal_; }
 
   const std::vector<ContactNetwork::Pair>& pairs() const { return pairs_; }
-  const std::vector<Quad>& springs() const { return spring_; }         ///< m | 0
+  const Quads& springs() const { return spring_; }                     ///< m | 0
   const std::vector<double>& prestress() const { return prestress_; }  ///< t
 
  private:
   std::vector<ContactNetwork::Pair> pairs_;
-  std::vector<Quad> spring_;       ///< m | 0
+  Quads spring_;                   ///< m | 0
   std::vector<double> prestress_;  ///< t
   std::vector<Sym6> diagonal_;
 };

@@ -1,30 +1,8 @@
-// The contact law: force, energy and stiffness of one contact from scalars. Another law is another struct
-// with the same members; nothing else in the engine knows the formula.
+// The contact law of the engine, for numbers; what a law is stands in contact_law-inl.hpp.
 #pragma once
 
 #include "grainlaw/element/material.hpp"
 
 namespace grainlaw::dem {
-
-/// Linear visco-elastic contact, Eq. 2.1: f = k delta + gamma d(delta)/dt along the normal while delta >= 0.
-/// The force is repulsive where positive and is not clipped: it may pull shortly before the grains part.
-struct LinearContact {
-  double k = 0;      ///< ug/us^2
-  double gamma = 0;  ///< ug/us, the same for every pair
-
-  /// Force, ug mm/us^2; `overlap` delta >= 0 in mm, `closing` d(delta)/dt in mm/us.
-  double force(double overlap, double closing) const { return k * overlap + gamma * closing; }
-  /// Elastic energy, ug mm^2/us^2.
-  double energy(double overlap) const { return 0.5 * k * overlap * overlap; }
-  /// Whether the force depends on `closing`; where it does not, the loops leave velocities alone.
-  bool damped() const { return gamma != 0; }
-  /// d(force)/d(overlap), ug/us^2.
-  double stiffness(double /*overlap*/) const { return k; }
-
-  static LinearContact of(const Material& material) { return {material.k, material.gamma}; }
-};
-
-/// The law that the engine is built with; all its loops are compiled for this one.
-using ContactLaw = LinearContact;
-
+#include "grainlaw/dem/contact_law-inl.hpp"
 }  // namespace grainlaw::dem

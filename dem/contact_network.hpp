@@ -22,7 +22,7 @@ struct ContactNetwork {
   };
   std::size_t count = 0;
   std::vector<Pair> pairs;
-  std::vector<Quad> normal;       ///< from j to i | distance of the centres, mm
+  Quads normal;                   ///< from j to i | distance of the centres, mm
   std::vector<double> force;      ///< elastic, repulsive where positive, ug mm/us^2
   std::vector<double> stiffness;  ///< d(force)/d(overlap), ug/us^2
   double energy = 0;              ///< elastic, ug mm^2/us^2

@@ -95,7 +95,7 @@ class Trial {
     for (const std::string& name : asked) {
       observe::Observers one({name});
       std::size_t row = 0;
-      std::vector<Quad> velocity;
+      Quads velocity;
       Measurement measured;
       const auto measure = [&] { velocity = dynamics_.velocities(), measured = dynamics_.measure(); };
       const auto observe = [&] { one.observe(dynamics_, velocity, measured, material_, sign, 0, row++); };

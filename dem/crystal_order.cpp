@@ -43,7 +43,7 @@ std::vector<std::vector<Near>> neighbourhoods(const State& state) {
   Cell cell(state.box);
   cell.reduce();
   double mean = 0, largest = 0;
-  std::vector<Quad> place;
+  Quads place;
   for (std::size_t i = 0; i < state.count(); ++i) {
     const Vec3 x = cell.wrap(state.position[i]);
     place.push_back({x[0], x[1], x[2], state.radius[i]});
@@ -52,7 +52,7 @@ std::vector<std::vector<Near>> neighbourhoods(const State& state) {
   }
   const double skin = std::min((neighbour_range - 1) * mean, cell.narrowest() - largest);
   const LinkedCells cells(place, cell, largest + skin);
-  std::vector<Quad> sorted;
+  Quads sorted;
   for (const std::uint32_t i : cells.order()) sorted.push_back(place[i]);
   NearPairs pairs;
   cells.list_pairs(sorted, cell, skin, pairs);

@@ -65,6 +65,7 @@ void Dynamics::start_flow(double dt, const Mat3& gradient) {
   dt_ = dt;
   cell_ = cell_.moved(cell_.edges(), gradient);
   if (neighbours_.outdated(grains_, cell_)) update_list(planned_steps * dt_);
+  std::fill(grains_.force.begin(), grains_.force.end(), Quad{});
   compute_forces();
   for (std::size_t i = 0; i < count(); ++i) {
     const Quad now = acceleration(i), &v = grains_.motion[i];
@@ -118,7 +119,7 @@ void Dynamics::deal_out() {
 }
 
 void Dynamics::compute_forces() {
-  if (!team_) return contact_forces(law_, neighbours_.pairs(), cell_, grains_);
+  if (!team_) return add_contact_forces(law_, neighbours_.pairs(), cell_, grains_);
   team_->run([&](int t) {
     contact_forces(law_, neighbours_.pairs(), cell_, shares_[static_cast<std::size_t>(t)], grains_);
   });
@@ -129,9 +130,9 @@ Quad Dynamics::acceleration(std::size_t i) const {
                            cell_.gradient());
 }
 
-std::vector<Quad> Dynamics::velocities() const {
+Quads Dynamics::velocities() const {
   if (dt_ == 0) return grains_.motion;  // not started
-  std::vector<Quad> v = grains_.half;
+  Quads v = grains_.half;
   for (std::size_t i = 0; i < count(); ++i) {
     const Quad now = acceleration(i);
     v[i].x += 0.5 * dt_ * now.x;

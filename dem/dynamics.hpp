@@ -74,7 +74,7 @@ class Dynamics {
   const Material& material() const { return material_; }
 
   /// Fluctuation velocities of the full step, mm/us, in the order of grains().
-  std::vector<Quad> velocities() const;
+  Quads velocities() const;
   Measurement measure() const;
   /// measure().stress but for the velocity, which is the one that the forces of this step saw (it is
   /// predicted, O(dt^3) off): cheap enough for a servo.
@@ -94,6 +94,7 @@ class Dynamics {
   void assemble(int threads);
   void update_list(double lookahead);
   void deal_out();
+  /// From forces that are zero.
   void compute_forces();
 
   Material material_;

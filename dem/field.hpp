@@ -9,7 +9,7 @@
 
 namespace grainlaw::dem {
 
-using Field = std::vector<Quad>;
+using Field = Quads;
 
 inline double dot(const Field& a, const Field& b) {
   Quad sum;

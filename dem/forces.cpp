@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 #include "grainlaw/dem/simd_targets.hpp"
 // Compiled once per instruction set; the best one that the machine has is taken at run time.
@@ -18,6 +20,10 @@ HWY_BEFORE_NAMESPACE();
 
 namespace grainlaw::dem::HWY_NAMESPACE {
 
+namespace of_vectors {
+#include "grainlaw/dem/contact_law-inl.hpp"
+}  // namespace of_vectors
+
 static_assert(GroupedPairs::width % lanes == 0 && CrossingPairs::width % lanes == 0);
 constexpr std::size_t second = lanes - 4;  // from a grain to the one in the other half of its vector
 
@@ -25,14 +31,13 @@ constexpr std::size_t second = lanes - 4;  // from a grain to the one in the oth
 /// and the box's gradient, which has a diagonal only or is full.
 enum class Motion { none, straight, tilted };
 
-/// Beyond so many grains they are in memory, not in a cache, and partners are fetched some groups ahead: a
-/// third faster there, and a sixth slower where they are cached.
+/// Beyond so many grains they are in memory, not in a cache, and partners are fetched ahead: forces in less
+/// than half the time there.
 constexpr std::size_t most_cached = 100'000;
-constexpr std::size_t fetched_ahead = 3;
 
 /// What the loops need beside the grains.
 struct Constants {
-  ContactLaw law;
+  of_vectors::ContactLaw law;
   Wide gx, gy, gz;     // the velocity gradient's diagonal
   Wide gyz, gxz, gxy;  // yz and zy together, ...: along the branch only the symmetric part acts
   Wide apart = wide_quad({1, 1, 1, -1});  // turns a difference of places into branch | r_i + r_j
@@ -47,8 +52,7 @@ HWY_INLINE Wide strength_of(const Constants& c, const Wide (&branch)[4], const W
   // Root and quotient do not wait for each other.
   const Wide squared = larger(wide(1e-60), mul_add(x, x, mul_add(y, y, z * z)));
   const Wide distance = root(squared), inverse = distance * (wide(1) / squared), overlap = reach - distance;
-  alignas(64) double overlaps[lanes], closing[lanes]{}, forces[lanes];
-  store(overlap, overlaps);
+  Wide closing = wide(0);
   if constexpr (of != Motion::none) {
     Wide u, v, w, unused;
     transpose(velocity, u, v, w, unused);
@@ -58,78 +62,123 @@ HWY_INLINE Wide strength_of(const Constants& c, const Wide (&branch)[4], const W
     }
     const Wide parting =
         mul_add(x, mul_add(c.gx, x, u), mul_add(y, mul_add(c.gy, y, v), z * mul_add(c.gz, z, w)));
-    store(wide(0) - parting * inverse, closing);
+    closing = wide(0) - parting * inverse;
   }
-  for (std::size_t k = 0; k < lanes; ++k) forces[k] = c.law.force(overlaps[k], closing[k]);
-  return where_not_negative(overlap, load_wide(forces) * inverse);
+  return where_not_negative(overlap, c.law.force(overlap, closing) * inverse);
 }
 
 HWY_INLINE void add(Four part, Quad& to) { store(load(to) + part, to); }
 HWY_INLINE void subtract(Four part, Quad& from) { store(load(from) - part, from); }
 
+/// A row of pairs, as many as there are lanes.
+struct Row {
+  Wide branch[4];
+  Wide strength;
+};
+
 template <int k>
-HWY_INLINE void act(Wide strength, const Wide (&branch)[4], Wide (&total)[4], const std::uint32_t* partner,
-                    Quad* force) {
-  const Wide f = spread_row<k>(strength) * branch[k];
+HWY_INLINE void act_of(const Row& row, Wide (&total)[4], const std::uint32_t* partner, Quad* force) {
+  const Wide f = spread<k>(row.strength) * row.branch[k];
   total[k] = total[k] + f;
   subtract(lower(f), force[partner[k]]);
   if constexpr (lanes == 8) subtract(upper(f), force[partner[k + second]]);
 }
 
-/// Fetches what the partners of a group need.
-template <Motion of>
-HWY_INLINE void fetch(const GroupedPairs::Group& group, const Groups& list, const Quad* place,
-                      const Quad* motion, Quad* force) {
-  for (std::uint32_t p = group.first; p < group.last; ++p) {
-    const std::uint32_t j = list.partner[p];
-    hwy::Prefetch(place + j);
-    if constexpr (of != Motion::none) hwy::Prefetch(motion + j);
-    hwy::Prefetch(force + j);
+/// Takes the forces of a row from its partners and adds them to the total on the grains that it belongs to.
+HWY_INLINE void act(const Row& row, Wide (&total)[4], const std::uint32_t* partner, Quad* force) {
+  act_of<0>(row, total, partner, force);
+  act_of<1>(row, total, partner, force);
+  act_of<2>(row, total, partner, force);
+  act_of<3>(row, total, partner, force);
+}
+
+/// Hands the totals over to their grains.
+HWY_INLINE void add_and_clear(Wide (&total)[4], const std::uint32_t* grain, Quad* force) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    add(lower(total[k]), force[grain[k]]);
+    if constexpr (lanes == 8) add(upper(total[k]), force[grain[k + second]]);
+    total[k] = wide(0);
   }
 }
 
-/// Each group of grains stays in registers, places, velocities and forces, while it meets its partners.
+/// The partners of a run of grains lie at most so far on in the order of the grains: what lies before has
+/// been used, and what lies at this edge is fetched some runs ahead, in step with the groups.
+class Frontier {
+ public:
+  template <Motion of>
+  HWY_INLINE void fetch(const GroupedPairs::Group& group, const Groups& list, const Quad* place,
+                        const Quad* motion, const Quad* force) {
+    const std::size_t run = group.grain[0] / GroupedPairs::block;
+    const std::size_t edge = (run + 1) * GroupedPairs::block + list.reach,
+                      goal = std::min(list.grains, edge + ahead);
+    fetched_ = std::max(fetched_, std::min(edge, goal));
+    for (std::size_t n = 0; n < at_once && fetched_ < goal;
+         ++n, fetched_ += 2) {  // two lie in a line of the cache
+      hwy::Prefetch(place + fetched_);
+      if constexpr (of != Motion::none) hwy::Prefetch(motion + fetched_);
+      hwy::Prefetch(force + fetched_);
+    }
+  }
+
+ private:
+  static constexpr std::size_t ahead = 4 * GroupedPairs::block, at_once = 6;
+  std::size_t fetched_ = 0;
+};
+
+/// Each group of grains stays in registers, places, velocities and forces, while it meets its partners. A row
+/// of pairs acts only after the next one is computed: what waits for a root then has something to do beside
+/// it.
 template <Motion of, bool far>
 void add_forces_within(const Constants& constants, const Quad* place, const Quad* motion, const Groups& list,
                        Quad* force) {
+  if (list.groups.empty()) return;
+  Row row{{wide(0), wide(0), wide(0), wide(0)}, wide(0)};  // nothing acts on the first grains yet
+  Wide total[4] = {wide(0), wide(0), wide(0), wide(0)};
+  const std::uint32_t *grain = list.groups[0].grain.data(), *partner = grain;
+  Frontier frontier;
   for (std::size_t g = 0; g < list.groups.size(); ++g) {
     const GroupedPairs::Group& group = list.groups[g];
-    if constexpr (far)
-      fetch<of>(list.groups[std::min(g + fetched_ahead, list.groups.size() - 1)], list, place, motion, force);
+    if constexpr (far) frontier.fetch<of>(group, list, place, motion, force);
     for (std::size_t half = 0; half < GroupedPairs::width; half += lanes) {
-      const std::uint32_t* const grain = &group.grain[half];
-      Wide place_i[4], motion_i[4], total[4];
+      const std::uint32_t* const own = &group.grain[half];
+      Wide place_i[4], motion_i[4];
       for (std::size_t k = 0; k < 4; ++k) {
-        place_i[k] = rows(place[grain[k]], place[grain[k + second]]);
-        if constexpr (of != Motion::none) motion_i[k] = rows(motion[grain[k]], motion[grain[k + second]]);
-        total[k] = wide(0);
+        place_i[k] = rows(place[own[k]], place[own[k + second]]);
+        if constexpr (of != Motion::none) motion_i[k] = rows(motion[own[k]], motion[own[k + second]]);
       }
-      const std::uint32_t* const end = list.partner + group.last;
-      for (const std::uint32_t* j = list.partner + group.first + half; j < end; j += GroupedPairs::width) {
-        Wide branch[4], velocity[4];
+      const auto compute = [&](const std::uint32_t* j) HWY_ATTR {
+        Row next;
+        Wide velocity[4];
         for (std::size_t k = 0; k < 4; ++k) {
-          branch[k] = mul_sub_from(constants.apart, rows(place[j[k]], place[j[k + second]]), place_i[k]);
+          next.branch[k] = mul_sub_from(constants.apart, rows(place[j[k]], place[j[k + second]]), place_i[k]);
           if constexpr (of != Motion::none)
             velocity[k] = motion_i[k] - rows(motion[j[k]], motion[j[k + second]]);
         }
-        const Wide strength = strength_of<of>(constants, branch, velocity);
-        act<0>(strength, branch, total, j, force);
-        act<1>(strength, branch, total, j, force);
-        act<2>(strength, branch, total, j, force);
-        act<3>(strength, branch, total, j, force);
-      }
-      for (std::size_t k = 0; k < 4; ++k) {
-        add(lower(total[k]), force[grain[k]]);
-        if constexpr (lanes == 8) add(upper(total[k]), force[grain[k + second]]);
+        next.strength = strength_of<of>(constants, next.branch, velocity);
+        return next;
+      };
+      const std::uint32_t *j = list.partner + group.first + half, *const end = list.partner + group.last;
+      Row next = compute(j);
+      act(row, total, partner, force);
+      add_and_clear(total, grain, force);
+      grain = own;
+      for (;;) {
+        row = next;
+        partner = j;
+        j += GroupedPairs::width;
+        if (j >= end) break;
+        next = compute(j);
+        act(row, total, partner, force);
       }
     }
   }
+  act(row, total, partner, force);
+  add_and_clear(total, grain, force);
 }
 
 template <int k>
-HWY_INLINE void act_on_both(Wide strength, const Wide (&branch)[4], const CrossingPairs::Pair* pair,
-                            Quad* force) {
-  const Wide f = spread_row<k>(strength) * branch[k];
+HWY_INLINE void act_on_both_of(const Row& row, const CrossingPairs::Pair* pair, Quad* force) {
+  const Wide f = spread<k>(row.strength) * row.branch[k];
   add(lower(f), force[pair[k].i]);
   subtract(lower(f), force[pair[k].j]);
   if constexpr (lanes == 8) {
@@ -138,24 +187,39 @@ HWY_INLINE void act_on_both(Wide strength, const Wide (&branch)[4], const Crossi
   }
 }
 
+HWY_INLINE void act_on_both(const Row& row, const CrossingPairs::Pair* pair, Quad* force) {
+  act_on_both_of<0>(row, pair, force);
+  act_on_both_of<1>(row, pair, force);
+  act_on_both_of<2>(row, pair, force);
+  act_on_both_of<3>(row, pair, force);
+}
+
 template <Motion of>
 void add_forces_across(const Constants& constants, const Quad* place, const Quad* motion,
                        const CrossingPairs& list, const Quad* shifts, Quad* force) {
-  for (std::size_t p = 0; p < list.pairs.size(); p += lanes) {
-    const CrossingPairs::Pair* const pair = &list.pairs[p];
-    Wide branch[4], velocity[4];
+  if (list.pairs.empty()) return;
+  const auto compute = [&](const CrossingPairs::Pair* pair) HWY_ATTR {
+    Row row;
+    Wide velocity[4];
     for (std::size_t k = 0; k < 4; ++k) {
       const CrossingPairs::Pair &a = pair[k], &b = pair[k + second];
-      branch[k] = mul_sub_from(constants.apart, rows(place[a.j], place[b.j]), rows(place[a.i], place[b.i])) -
-                  rows(shifts[a.image], shifts[b.image]);
+      row.branch[k] =
+          mul_sub_from(constants.apart, rows(place[a.j], place[b.j]), rows(place[a.i], place[b.i])) -
+          rows(shifts[a.image], shifts[b.image]);
       if constexpr (of != Motion::none)
         velocity[k] = rows(motion[a.i], motion[b.i]) - rows(motion[a.j], motion[b.j]);
     }
-    const Wide strength = strength_of<of>(constants, branch, velocity);
-    act_on_both<0>(strength, branch, pair, force);
-    act_on_both<1>(strength, branch, pair, force);
-    act_on_both<2>(strength, branch, pair, force);
-    act_on_both<3>(strength, branch, pair, force);
+    row.strength = strength_of<of>(constants, row.branch, velocity);
+    return row;
+  };
+  const CrossingPairs::Pair *pair = list.pairs.data(), *const end = pair + list.pairs.size();
+  for (Row row = compute(pair);;) {
+    const CrossingPairs::Pair* const next = pair + lanes;
+    if (next == end) return act_on_both(row, pair, force);
+    const Row computed = compute(next);
+    act_on_both(row, pair, force);
+    row = computed;
+    pair = next;
   }
 }
 
@@ -163,9 +227,13 @@ template <Motion of>
 void add_to_each(const ContactLaw& law, const Grains& grains, const Mat3& gradient, const Groups& within,
                  const CrossingPairs& crossing, const Quad* shifts, Quad* force) {
   const auto both = [&](std::size_t a, std::size_t b) { return wide(gradient(a, b) + gradient(b, a)); };
-  const Constants constants{
-      law,       wide(gradient(0, 0)), wide(gradient(1, 1)), wide(gradient(2, 2)), both(1, 2), both(0, 2),
-      both(0, 1)};
+  const Constants constants{std::bit_cast<of_vectors::ContactLaw>(law),
+                            wide(gradient(0, 0)),
+                            wide(gradient(1, 1)),
+                            wide(gradient(2, 2)),
+                            both(1, 2),
+                            both(0, 2),
+                            both(0, 1)};
   const Quad* const place = grains.place.data();
   const Quad* const motion = grains.motion.data();
   if (grains.count() > most_cached)
@@ -196,11 +264,15 @@ HWY_EXPORT(lanes_here);
 std::size_t force_lanes() { return HWY_DYNAMIC_DISPATCH(lanes_here)(); }
 
 void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains) {
-  const std::array<Quad, 27> shifts = cell.shifts();
   std::fill(grains.force.begin(), grains.force.end(), Quad{});
+  add_contact_forces(law, pairs, cell, grains);
+}
+
+void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains) {
+  const std::array<Quad, 27> shifts = cell.shifts();
   HWY_DYNAMIC_DISPATCH(add_forces)
-  (law, grains, cell, {pairs.within.groups, pairs.within.partner.data()}, pairs.crossing, shifts.data(),
-   grains.force.data());
+  (law, grains, cell, {pairs.within.groups, pairs.within.partner.data(), grains.count(), pairs.within.reach},
+   pairs.crossing, shifts.data(), grains.force.data());
 }
 
 void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share,
@@ -212,9 +284,10 @@ void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell,
     HWY_DYNAMIC_DISPATCH(add_forces)
     (law, grains, cell, within, crossing, shifts.data(), share.force.data());
   };
-  add({}, share.halo);
+  add({{}, nullptr, 0, 0}, share.halo);
   const std::span<const GroupedPairs::Group> groups = pairs.within.groups;
-  add({groups.subspan(share.first_group, share.last_group - share.first_group), pairs.within.partner.data()},
+  add({groups.subspan(share.first_group, share.last_group - share.first_group), pairs.within.partner.data(),
+       grains.count(), pairs.within.reach},
       share.crossing);
   std::copy(begin, end, grains.force.begin() + share.first);
 }

@@ -65,20 +65,32 @@ template <class V>
 HWY_INLINE Vector<V> where_not_negative(Vector<V> test, Vector<V> a) {
   return {hn::IfThenElseZero(hn::Ge(test.v, hn::Zero(hn::DFromV<V>())), a.v)};
 }
-/// One of the four, four times.
-template <int which>
-HWY_INLINE Four spread(Four a) {
-  const auto both = hn::Broadcast<which % 2>(a.v);  // of each half
-  if constexpr (which < 2)
-    return {hn::ConcatLowerLower(tag, both, both)};
-  else
-    return {hn::ConcatUpperUpper(tag, both, both)};
+/// One of each four, four times.
+template <int which, class V>
+HWY_INLINE Vector<V> spread(Vector<V> a) {
+#if HWY_MAX_BYTES >= 64
+  if constexpr (sizeof(V) == 64) return {V{_mm512_permutex_pd(a.v.raw, 0x55 * which)}};
+#endif
+  if constexpr (sizeof(V) == 32) {
+    const auto both = hn::Broadcast<which % 2>(a.v);  // of each half
+    if constexpr (which < 2)
+      return {hn::ConcatLowerLower(tag, both, both)};
+    else
+      return {hn::ConcatUpperUpper(tag, both, both)};
+  }
 }
-/// The first three of `a`, the last of `b`.
-HWY_INLINE Four with_last(Four a, Four b) { return {hn::IfThenElse(hn::FirstN(tag, 3), a.v, b.v)}; }
-/// The sum of the four, four times.
-HWY_INLINE Four sum(Four a) {
-  const auto pairs = hn::Add(a.v, hn::Reverse2(tag, a.v));
+/// The first three of each four of `a`, the last of `b`.
+template <class V>
+HWY_INLINE Vector<V> with_last(Vector<V> a, Vector<V> b) {
+#if HWY_MAX_BYTES >= 64
+  if constexpr (sizeof(V) == 64) return {V{_mm512_mask_blend_pd(0x88, a.v.raw, b.v.raw)}};
+#endif
+  if constexpr (sizeof(V) == 32) return {hn::IfThenElse(hn::FirstN(tag, 3), a.v, b.v)};
+}
+/// The sum of each four, four times.
+template <class V>
+HWY_INLINE Vector<V> sum(Vector<V> a) {
+  const auto pairs = hn::Add(a.v, hn::Reverse2(hn::DFromV<V>(), a.v));
   return {hn::Add(pairs, hn::SwapAdjacentBlocks(pairs))};
 }
 HWY_INLINE Wide load_wide(const double* p) { return {hn::LoadU(wide_tag, p)}; }
@@ -92,10 +104,6 @@ HWY_INLINE Wide rows(const Quad& a, const Quad& b) {
 }
 HWY_INLINE Four lower(Wide a) { return {hn::LowerHalf(tag, a.v)}; }
 HWY_INLINE Four upper(Wide a) { return {hn::UpperHalf(tag, a.v)}; }
-template <int k>
-HWY_INLINE Wide spread_row(Wide a) {
-  return {hn::Vec<decltype(wide_tag)>{_mm512_permutex_pd(a.v.raw, 0x55 * k)}};
-}
 /// The columns of rows.
 HWY_INLINE void transpose(const Wide (&row)[4], Wide& x, Wide& y, Wide& z, Wide& w) {
   const auto low01 = hn::InterleaveLower(wide_tag, row[0].v, row[1].v),
@@ -111,14 +119,6 @@ HWY_INLINE void transpose(const Wide (&row)[4], Wide& x, Wide& y, Wide& z, Wide&
 HWY_INLINE Wide rows(const Quad& a, const Quad&) { return {hn::LoadU(tag, &a.x)}; }
 HWY_INLINE Four lower(Wide a) { return a; }
 HWY_INLINE Four upper(Wide a) { return a; }
-template <int k>
-HWY_INLINE Wide spread_row(Wide a) {
-  const auto both = hn::Broadcast<k % 2>(a.v);
-  if constexpr (k < 2)
-    return {hn::ConcatLowerLower(tag, both, both)};
-  else
-    return {hn::ConcatUpperUpper(tag, both, both)};
-}
 HWY_INLINE void transpose(const Wide (&row)[4], Wide& x, Wide& y, Wide& z, Wide& w) {
   const auto low01 = hn::InterleaveLower(tag, row[0].v, row[1].v),
              low23 = hn::InterleaveLower(tag, row[2].v, row[3].v);
@@ -130,6 +130,7 @@ HWY_INLINE void transpose(const Wide (&row)[4], Wide& x, Wide& y, Wide& z, Wide&
   w = {hn::ConcatUpperUpper(tag, high23, high01)};
 }
 #endif
+/// The same four, as many times as a vector holds four.
 HWY_INLINE Wide wide_quad(const Quad& q) { return rows(q, q); }
 
 #else
@@ -186,10 +187,6 @@ HWY_INLINE Wide wide_quad(const Quad& q) { return load(&q.x); }
 HWY_INLINE Wide rows(const Quad& a, const Quad&) { return load(&a.x); }
 HWY_INLINE Four lower(Wide a) { return a; }
 HWY_INLINE Four upper(Wide a) { return a; }
-template <int k>
-HWY_INLINE Wide spread_row(Wide a) {
-  return all(a.v[k]);
-}
 HWY_INLINE void transpose(const Four (&row)[4], Four& x, Four& y, Four& z, Four& w) {
   x = each([&](int k) { return row[k].v[0]; });
   y = each([&](int k) { return row[k].v[1]; });
@@ -201,9 +198,26 @@ HWY_INLINE void transpose(const Four (&row)[4], Four& x, Four& y, Four& z, Four&
 
 HWY_INLINE Four load(const Quad& q) { return load(&q.x); }
 HWY_INLINE void store(Four a, Quad& q) { store(a, &q.x); }
-HWY_INLINE Four first_three(const Vec3& a, double last) {
-  const double four[4] = {a[0], a[1], a[2], last};
-  return load(four);
+/// A vector of one or two fours: those that lie side by side from `first` on, ...
+template <class V>
+HWY_INLINE V load_fours(const Quad* first) {
+  if constexpr (std::is_same_v<V, Four>)
+    return load(*first);
+  else
+    return load_wide(&first->x);
+}
+HWY_INLINE void store_fours(Four a, Quad* first) { store(a, *first); }
+#if HWY_MAX_BYTES >= 64
+HWY_INLINE void store_fours(Wide a, Quad* first) { store(a, &first->x); }
+#endif
+/// ... or the same one in each.
+template <class V>
+HWY_INLINE V first_three(const Vec3& a, double last) {
+  const Quad four{a[0], a[1], a[2], last};
+  if constexpr (std::is_same_v<V, Four>)
+    return load(four);
+  else
+    return wide_quad(four);
 }
 
 }  // namespace grainlaw::dem::HWY_NAMESPACE

@@ -37,15 +37,15 @@ double Grains::smallest_radius() const {
 }
 
 namespace {
-template <class T>
-void permute(std::vector<T>& list, const std::vector<std::uint32_t>& order) {
-  std::vector<T> sorted(list.size());
+template <class List>
+void permute(List& list, const std::vector<std::uint32_t>& order) {
+  List sorted(list.size());
   for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = list[order[i]];
   list.swap(sorted);
 }
 }  // namespace
 
-State Grains::state(const Cell& cell, const std::vector<Quad>& velocity) const {
+State Grains::state(const Cell& cell, const Quads& velocity) const {
   State state;
   state.box = cell.edges();
   state.position.resize(count());

@@ -14,11 +14,11 @@ namespace grainlaw::dem {
 /// wrapped into the box only when the neighbour list sorts the grains, and move freely in between, so that
 /// the image by which two neighbours meet stays the same.
 struct Grains {
-  std::vector<Quad> place;         ///< x, y, z | radius, mm
-  std::vector<Quad> motion;        ///< fluctuation velocity that the contact forces see, mm/us
-  std::vector<Quad> half;          ///< fluctuation velocity half a step before, mm/us
-  std::vector<Quad> force;         ///< contact force, ug mm/us^2
-  std::vector<Quad> acceleration;  ///< of the step before, mm/us^2 | 1/mass, 1/ug
+  Quads place;         ///< x, y, z | radius, mm
+  Quads motion;        ///< fluctuation velocity that the contact forces see, mm/us
+  Quads half;          ///< fluctuation velocity half a step before, mm/us
+  Quads force;         ///< contact force, ug mm/us^2
+  Quads acceleration;  ///< of the step before, mm/us^2 | 1/mass, 1/ug
   std::vector<std::uint32_t> id;
 
   Grains() = default;
@@ -30,7 +30,7 @@ struct Grains {
   double smallest_radius() const;
   /// What is exchanged, in the order of the State they came from; `velocity` in the order here. Positions are
   /// wrapped into the box; time and step are left at 0.
-  State state(const Cell& cell, const std::vector<Quad>& velocity) const;
+  State state(const Cell& cell, const Quads& velocity) const;
   /// Grain `order[i]` becomes grain i.
   void reorder(const std::vector<std::uint32_t>& order);
 

@@ -19,14 +19,19 @@ std::vector<std::array<int, 3>> forward_neighbours() {
   return list;
 }
 
-/// A cell beside another, and the image of the box in which it lies.
+[[noreturn]] void throw_same_point(const Quad& a) {
+  throw Error("two grains lie at the same point (" + to_text(a.x) + ", " + to_text(a.y) + ", " +
+              to_text(a.z) + ") mm: the direction of their contact is undefined");
+}
+
+/// A cell beside another, or several in a row, and the image of the box in which they lie.
 struct Beside {
   std::uint32_t first, last, image;
 };
 
 }  // namespace
 
-LinkedCells::LinkedCells(const std::vector<Quad>& place, const Cell& cell, double range) {
+LinkedCells::LinkedCells(const Quads& place, const Cell& cell, double range) {
   // Not many more cells than grains: a dilute box would spend its time on empty ones.
   const double widest =
       std::cbrt(cell.volume() / static_cast<double>(std::max<std::size_t>(place.size(), 1)));
@@ -53,26 +58,36 @@ LinkedCells::LinkedCells(const std::vector<Quad>& place, const Cell& cell, doubl
   for (std::uint32_t i = 0; i < place.size(); ++i) order_[next[home[i]]++] = i;
 }
 
-void LinkedCells::list_pairs(const std::vector<Quad>& place, const Cell& cell, double skin,
-                             NearPairs& pairs) const {
+void LinkedCells::list_pairs(const Quads& place, const Cell& cell, double skin, NearPairs& pairs) const {
   static const std::vector<std::array<int, 3>> forward = forward_neighbours();
   const std::array<Quad, 27> shifts = cell.shifts();
   pairs.begin.assign(1, 0);
-  pairs.partner.clear();
   pairs.crossing.clear();
-  const auto consider = [&](std::uint32_t i, std::uint32_t j, std::uint32_t image) {
-    if (i == j) return;  // its own image, out of reach in a box at least `range` wide
+  pairs.reach = 0;
+  std::size_t n = 0;
+  const auto apart = [&](std::uint32_t i, std::uint32_t j, std::uint32_t image) {
     const Quad &a = place[i], &b = place[j], &shift = shifts[image];
     const double x = a.x - b.x - shift.x, y = a.y - b.y - shift.y, z = a.z - b.z - shift.z;
-    const double squared = x * x + y * y + z * z, reach = a.w + b.w + skin;
-    if (squared >= reach * reach) return;
-    if (squared == 0)
-      throw Error("two grains lie at the same point (" + to_text(a.x) + ", " + to_text(a.y) + ", " +
-                  to_text(a.z) + ") mm: the direction of their contact is undefined");
-    if (image == Cell::home_image)
-      pairs.partner.push_back(j);
-    else
-      pairs.crossing.push_back({i, j, image});
+    return x * x + y * y + z * z;
+  };
+  const auto near = [&](std::uint32_t i, std::uint32_t j, double squared) {
+    const double reach = place[i].w + place[j].w + skin;
+    if (squared == 0) throw_same_point(place[i]);
+    return squared < reach * reach;
+  };
+  const auto list_home = [&](std::uint32_t i, std::uint32_t first, std::uint32_t last) {
+    if (first == last) return;
+    pairs.partner.resize(std::max<std::size_t>(pairs.partner.size(), n + last - first));
+    pairs.reach = std::max(pairs.reach, last - 1 - i);
+    for (std::uint32_t j = first; j < last; ++j) {
+      pairs.partner[n] = j;  // kept or overwritten by the next one: no branch to mispredict
+      n += near(i, j, apart(i, j, Cell::home_image)) ? 1u : 0u;
+    }
+  };
+  const auto list_crossing = [&](std::uint32_t i, const Beside& b) {
+    for (std::uint32_t j = b.first; j < b.last; ++j)
+      // Its own image is out of reach in a box at least `range` wide.
+      if (i != j && near(i, j, apart(i, j, b.image))) pairs.crossing.push_back({i, j, b.image});
   };
   std::vector<Beside> beside;
   std::array<int, 3> at{};
@@ -88,17 +103,26 @@ void LinkedCells::list_pairs(const std::vector<Quad>& place, const Cell& cell, d
             other[c] -= image[c] * count_[c];
           }
           const auto k = static_cast<std::size_t>((other[0] * count_[1] + other[1]) * count_[2] + other[2]);
-          if (begin_[k] < begin_[k + 1])
-            beside.push_back({begin_[k], begin_[k + 1], Cell::image_number(image[0], image[1], image[2])});
+          const std::uint32_t number = Cell::image_number(image[0], image[1], image[2]);
+          // Cells side by side along z make one run of grains.
+          if (!beside.empty() && beside.back().image == number && beside.back().last == begin_[k])
+            beside.back().last = begin_[k + 1];
+          else
+            beside.push_back({begin_[k], begin_[k + 1], number});
         }
         const auto k = static_cast<std::size_t>((at[0] * count_[1] + at[1]) * count_[2] + at[2]);
         for (std::uint32_t i = begin_[k]; i < begin_[k + 1]; ++i) {
-          for (std::uint32_t j = i + 1; j < begin_[k + 1]; ++j) consider(i, j, Cell::home_image);
-          for (const Beside& b : beside)
-            for (std::uint32_t j = b.first; j < b.last; ++j) consider(i, j, b.image);
-          pairs.begin.push_back(static_cast<std::uint32_t>(pairs.partner.size()));
+          list_home(i, i + 1, begin_[k + 1]);
+          for (const Beside& b : beside) {
+            if (b.image == Cell::home_image)
+              list_home(i, b.first, b.last);
+            else
+              list_crossing(i, b);
+          }
+          pairs.begin.push_back(static_cast<std::uint32_t>(n));
         }
       }
+  pairs.partner.resize(n);
 }
 
 }  // namespace grainlaw::dem

@@ -16,6 +16,7 @@ struct NearPairs {
   struct Crossing {
     std::uint32_t i, j, image;
   };
+  std::uint32_t reach = 0;         ///< partner - i is at most so much
   std::vector<Crossing> crossing;  ///< those that meet through a face of the box
 
   std::size_t count() const { return partner.size() + crossing.size(); }
@@ -27,14 +28,14 @@ class LinkedCells {
   /// are cut along the box's edges and their faces are as far apart as that, so that two grains in range lie
   /// in neighbouring ones. A grid may be one or two cells wide, because each of the 27 neighbours of a cell
   /// is looked up together with the image it belongs to.
-  LinkedCells(const std::vector<Quad>& place, const Cell& cell, double range);
+  LinkedCells(const Quads& place, const Cell& cell, double range);
 
   /// Grains cell by cell (z fastest), in each cell as they came.
   const std::vector<std::uint32_t>& order() const { return order_; }
 
   /// All pairs closer than r_i + r_j + skin <= range, each once; `place` in the order of order().
   /// Throws Error if two grains lie at the same point.
-  void list_pairs(const std::vector<Quad>& place, const Cell& cell, double skin, NearPairs& pairs) const;
+  void list_pairs(const Quads& place, const Cell& cell, double skin, NearPairs& pairs) const;
 
  private:
   std::array<int, 3> count_;

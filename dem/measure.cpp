@@ -8,7 +8,7 @@ namespace grainlaw::dem {
 
 namespace {
 
-double kinetic_energy(const Grains& grains, const std::vector<Quad>& velocity, std::size_t i) {
+double kinetic_energy(const Grains& grains, const Quads& velocity, std::size_t i) {
   const Vec3 v{velocity[i].x, velocity[i].y, velocity[i].z};
   return 0.5 / grains.acceleration[i].w * dot(v, v);
 }
@@ -30,15 +30,15 @@ void count_contacts(const std::vector<std::uint32_t>& contacts_of, Measurement& 
 
 }  // namespace
 
-double closing_speed(const Contact& c, const std::vector<Quad>& velocity, const Cell& cell) {
+double closing_speed(const Contact& c, const Quads& velocity, const Cell& cell) {
   const Quad &a = velocity[c.i], &b = velocity[c.j];
   const Vec3 flow = cell.affine_velocity(c.branch);
   const Vec3 relative{a.x - b.x + flow[0], a.y - b.y + flow[1], a.z - b.z + flow[2]};
   return -dot(c.branch, relative) / c.distance;
 }
 
-Sym6 static_stress(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
-                   const Cell& cell, const Pairs& pairs) {
+Sym6 static_stress(const ContactLaw& law, const Grains& grains, const Quads& velocity, const Cell& cell,
+                   const Pairs& pairs) {
   Sym6 stress{};
   for_each_contact(pairs, grains, cell, [&](const Contact& c) {
     add_dyad(stress, law.force(c.overlap, closing_speed(c, velocity, cell)) / c.distance, c.branch);
@@ -47,16 +47,16 @@ Sym6 static_stress(const ContactLaw& law, const Grains& grains, const std::vecto
   return stress;
 }
 
-Energies energies(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
-                  const Cell& cell, const Pairs& pairs) {
+Energies energies(const ContactLaw& law, const Grains& grains, const Quads& velocity, const Cell& cell,
+                  const Pairs& pairs) {
   Energies e;
   for (std::size_t i = 0; i < grains.count(); ++i) e.kinetic += kinetic_energy(grains, velocity, i);
   for_each_contact(pairs, grains, cell, [&](const Contact& c) { e.elastic += law.energy(c.overlap); });
   return e;
 }
 
-Measurement measure(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
-                    const Cell& cell, const Pairs& pairs) {
+Measurement measure(const ContactLaw& law, const Grains& grains, const Quads& velocity, const Cell& cell,
+                    const Pairs& pairs) {
   Measurement m;
   std::vector<std::uint32_t> contacts_of(grains.count(), 0);
   double solid = 0;

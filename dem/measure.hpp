@@ -34,18 +34,18 @@ struct Energies {
 };
 
 /// d(delta)/dt of a contact, that of the true motion: the box's is in it, mm/us.
-double closing_speed(const Contact& contact, const std::vector<Quad>& velocity, const Cell& cell);
+double closing_speed(const Contact& contact, const Quads& velocity, const Cell& cell);
 
 /// Measurement::stress alone, for a servo.
-Sym6 static_stress(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
-                   const Cell& cell, const Pairs& pairs);
+Sym6 static_stress(const ContactLaw& law, const Grains& grains, const Quads& velocity, const Cell& cell,
+                   const Pairs& pairs);
 /// Measurement::kinetic and elastic alone, for a relaxation.
-Energies energies(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
-                  const Cell& cell, const Pairs& pairs);
+Energies energies(const ContactLaw& law, const Grains& grains, const Quads& velocity, const Cell& cell,
+                  const Pairs& pairs);
 
 /// Everything at once. `velocity` is the fluctuation velocity at the time of the positions, mm/us, in the
 /// order of the grains.
-Measurement measure(const ContactLaw& law, const Grains& grains, const std::vector<Quad>& velocity,
-                    const Cell& cell, const Pairs& pairs);
+Measurement measure(const ContactLaw& law, const Grains& grains, const Quads& velocity, const Cell& cell,
+                    const Pairs& pairs);
 
 }  // namespace grainlaw::dem

@@ -18,6 +18,8 @@ constexpr double least_skin = 0.02;   // the narrowest outer skin worth listing
 constexpr std::uint32_t most_told_apart = 31;  // numbers of partners
 constexpr double flight_share = 0.125;         // s_i at most this share of the outer skin, but of a flyer
 constexpr std::size_t most_flyers = 16;
+constexpr std::size_t run_length =
+    64;  // of grains that are enclosed together, where a flyer looks for partners
 constexpr double longest_flight = 1;  // s_i of a flyer, in units of the mean radius
 
 /// |x - E X|^2
@@ -26,6 +28,25 @@ double strayed(const Quad& x, const Quad& reference, const Mat3& deformation) {
   const double a = x.x - carried[0], b = x.y - carried[1], c = x.z - carried[2];
   return a * a + b * b + c * c;
 }
+
+/// The box around the centres of some spheres, and the largest radius of them.
+struct Enclosure {
+  double reach = 0;
+  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+
+  void enclose(const Quad& b) {  // a comparison drops what is not a number
+    reach = std::max(reach, b.w);
+    low = {std::min(low[0], b.x), std::min(low[1], b.y), std::min(low[2], b.z)};
+    high = {std::max(high[0], b.x), std::max(high[1], b.y), std::max(high[2], b.z)};
+  }
+  bool may_be_near(const Quad& a) const {
+    const Vec3 at{a.x, a.y, a.z};
+    bool inside = true;
+    for (std::size_t c = 0; c < 3; ++c)
+      inside = inside && at[c] > low[c] - reach - a.w && at[c] < high[c] + reach + a.w;
+    return inside;
+  }
+};
 
 /// Whether the spheres of radius w about a and the image of b meet.
 bool near(const Quad& a, const Quad& b, const Quad& shift) {
@@ -153,7 +174,7 @@ void Neighbours::filter(const Grains& grains, const Cell& cell) {
     inner_reference_[i] = {p.x, p.y, p.z, (p.w + budget_[i]) * inflate};
   }
   inner_cell_ = cell;
-  std::vector<Quad> flying;
+  Quads flying;
   for (const std::uint32_t i : flyers_) {
     flying.push_back(inner_reference_[i]);
     inner_reference_[i].x = std::numeric_limits<double>::quiet_NaN();  // near to none
@@ -184,31 +205,33 @@ void Neighbours::filter(const Grains& grains, const Cell& cell) {
 }
 
 /// The pairs of the grains that fly, looked for among all grains and through all images in which one of them
-/// may lie near.
-void Neighbours::list_flyers(const std::vector<Quad>& flying, const std::array<Quad, 27>& shifts) {
-  double reach = 0;
-  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  const auto enclose = [&](const Quad& b) {
-    reach = std::max(reach, b.w);
-    low = {std::min(low[0], b.x), std::min(low[1], b.y), std::min(low[2], b.z)};
-    high = {std::max(high[0], b.x), std::max(high[1], b.y), std::max(high[2], b.z)};
+/// may lie near: in those runs of grains, as they are sorted in space, whose box is near enough.
+void Neighbours::list_flyers(const Quads& flying, const std::array<Quad, 27>& shifts) {
+  if (flying.empty()) return;
+  std::vector<Enclosure> runs((inner_reference_.size() + run_length - 1) / run_length);
+  Enclosure all;
+  const auto enclose = [&](std::size_t i) {
+    runs[i / run_length].enclose(inner_reference_[i]);
+    all.enclose(inner_reference_[i]);
   };
-  if (!flying.empty())
-    for (const Quad& b : inner_reference_) enclose(b);  // a comparison drops what is not a number
+  for (std::size_t i = 0; i < inner_reference_.size(); ++i)
+    enclose(i);  // but flyers, which have no place yet
   for (std::size_t k = 0; k < flying.size(); ++k) {
     const Quad& a = flying[k];
     for (std::uint32_t image = 0; image < shifts.size(); ++image) {
       const Quad& shift = shifts[image];
-      const Vec3 at{a.x - shift.x, a.y - shift.y, a.z - shift.z};
-      bool inside = true;
-      for (std::size_t c = 0; c < 3; ++c)
-        inside = inside && at[c] > low[c] - reach - a.w && at[c] < high[c] + reach + a.w;
-      if (!inside) continue;
-      for (std::uint32_t j = 0; j < inner_reference_.size(); ++j)
-        if (near(a, inner_reference_[j], shift)) inner_.crossing.pairs.push_back({flyers_[k], j, image});
+      const Quad at{a.x - shift.x, a.y - shift.y, a.z - shift.z, a.w};
+      if (!all.may_be_near(at)) continue;
+      for (std::size_t run = 0; run < runs.size(); ++run) {
+        if (!runs[run].may_be_near(at)) continue;
+        const std::size_t last = std::min((run + 1) * run_length, inner_reference_.size());
+        for (std::size_t j = run * run_length; j < last; ++j)
+          if (near(a, inner_reference_[j], shift))
+            inner_.crossing.pairs.push_back({flyers_[k], static_cast<std::uint32_t>(j), image});
+      }
     }
     inner_reference_[flyers_[k]] = a;  // so that the next flyers meet it
-    enclose(a);
+    enclose(flyers_[k]);
   }
 }
 
@@ -218,6 +241,7 @@ void Neighbours::group() {
   GroupedPairs& within = inner_.within;
   within.groups.clear();
   within.partner.clear();
+  within.reach = outer_.reach;
   within.count = near_begin_[count];
   constexpr std::uint32_t block = GroupedPairs::block;
   std::array<std::uint32_t, block> sorted{};

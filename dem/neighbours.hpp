@@ -58,7 +58,7 @@ class Neighbours {
  private:
   void make_budgets(const Grains& grains, double lookahead);
   bool outer_covers(const Grains& grains, const Cell& cell);
-  void list_flyers(const std::vector<Quad>& flying, const std::array<Quad, 27>& shifts);
+  void list_flyers(const Quads& flying, const std::array<Quad, 27>& shifts);
   void sort_and_list(Grains& grains, Cell& cell);
   double outer_range() const { return 2 * largest_radius_ + outer_skin_; }
   void filter(const Grains& grains, const Cell& cell);
@@ -73,8 +73,8 @@ class Neighbours {
       near_;                           ///< the filtered pairs grain by grain, before they are interleaved
   std::vector<std::uint32_t> flyers_;  ///< whose pairs are looked for among all grains; rising
   std::vector<double> budget_;         ///< s_i, mm
-  std::vector<Quad> inner_reference_;  ///< X | s_i^2, of the inner list
-  std::vector<Quad> outer_reference_;  ///< X, of the outer list
+  Quads inner_reference_;              ///< X | s_i^2, of the inner list
+  Quads outer_reference_;              ///< X, of the outer list
   Cell inner_cell_, outer_cell_;       ///< when they were made
   std::uint64_t updates_ = 0, sorts_ = 0;
 };

@@ -19,7 +19,7 @@ namespace grainlaw::dem {
 struct GroupedPairs {
   static constexpr std::size_t width = 8;
   /// A group's grains lie in one of the runs of so many that begin at 0; groups stand in the order of these.
-  static constexpr std::uint32_t block = 64;
+  static constexpr std::uint32_t block = 256;
   struct Group {
     std::array<std::uint32_t, width> grain;
     std::uint32_t first, last;  ///< their partners: eight at a time, one for each grain
@@ -27,6 +27,7 @@ struct GroupedPairs {
   std::vector<Group> groups;
   std::vector<std::uint32_t> partner;  ///< a place that is filled up holds the grain itself
   std::size_t count = 0;               ///< without what fills up
+  std::uint32_t reach = 0;             ///< partner - grain is at most so much
 
   /// Calls f(i, j) for every pair.
   template <class F>
@@ -37,10 +38,12 @@ struct GroupedPairs {
   }
 };
 
-/// Some groups of a list, and its partners.
+/// Some groups of a list, and its partners; how many grains there are, and `reach` of the list.
 struct Groups {
   std::span<const GroupedPairs::Group> groups;
   const std::uint32_t* partner;
+  std::size_t grains;
+  std::uint32_t reach;
 };
 
 /// Pairs that meet through a face of the box, eight at a time.

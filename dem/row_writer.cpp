@@ -64,7 +64,7 @@ RowWriter::RowWriter(const Material& material, const std::vector<Leg>& legs, dou
 double RowWriter::eps_vol(const Measurement& m) const { return std::log(m.nu / nu_start_); }
 
 void RowWriter::append(const Dynamics& dynamics, std::size_t segment, double eps_dev, double time) {
-  const std::vector<Quad> velocity = dynamics.velocities();
+  const Quads velocity = dynamics.velocities();
   const Measurement m =
       measure(dynamics.law(), dynamics.grains(), velocity, dynamics.cell(), dynamics.neighbours().pairs());
   if (!std::isfinite(m.kinetic) || !std::isfinite(m.elastic))

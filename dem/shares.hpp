@@ -17,7 +17,7 @@ struct Share {
   std::size_t first_group = 0, last_group = 0;  ///< their groups in the list
   CrossingPairs halo;                           ///< pairs of earlier groups with partners in here
   CrossingPairs crossing;                       ///< those pairs that have a grain in here
-  std::vector<Quad> force;                      ///< of all grains, but right only for its own
+  Quads force;                                  ///< of all grains, but right only for its own
 };
 
 /// Share `index` of `shares`, of `grains` grains, for loops that compute so many pairs at a time as `lanes`

@@ -61,11 +61,11 @@ Balance StaticPacking::balance() const {
 }
 
 Measurement StaticPacking::measure() const {
-  return dem::measure(law_, grains_, std::vector<Quad>(count()), cell_, neighbours_.pairs());
+  return dem::measure(law_, grains_, Quads(count()), cell_, neighbours_.pairs());
 }
 
 State StaticPacking::state() const {
-  State state = grains_.state(cell_, std::vector<Quad>(count()));
+  State state = grains_.state(cell_, Quads(count()));
   state.time_us = time_;
   state.step = step_;
   return state;

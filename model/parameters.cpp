@@ -23,7 +23,7 @@ struct Key {
   Range range;
 };
 
-Range share() { return {0, 1, false, true}; }  // of rattlers
+Range share() { return {0, 1, false, true}; }  // of rattlers, of the rate of fabric
 
 const std::vector<Key<PackingLaw>>& keys(const PackingLaw&) {
   static const std::vector<Key<PackingLaw>> list{
@@ -147,7 +147,38 @@ struct MemoryOption {
 };
 const MemoryOption memory_options[] = {{"phi_cr", &MemoryLaws::phi_cr, inside(0, 1)},
                                        {"eps_c", &MemoryLaws::eps_c, above(0)},
-                                       {"hold", &MemoryLaws::hold, inside(0, 1)}};
+                                       {"hold", &MemoryLaws::hold, share()}};
+
+/// near_jamming.ROW: name and where it is kept.
+constexpr std::array<std::pair<const char*, PackingLaw NearJammingLaws::*>, 2> near_modes{
+    {{"iso", &NearJammingLaws::iso}, {"d2", &NearJammingLaws::d2}}};
+constexpr std::array<std::pair<const char*, SaturationLaw NearJammingLaws::*>, 4> near_quantities{
+    {{"s_max", &NearJammingLaws::s_max},
+     {"beta_s", &NearJammingLaws::beta_s},
+     {"F_max", &NearJammingLaws::F_max},
+     {"beta_F", &NearJammingLaws::beta_F}}};
+
+/// Calls `f` with name and group of every row.
+template <class Laws, class F>
+void for_each_row(Laws& laws, F f) {
+  for (const auto& [name, member] : near_modes) f(name, laws.*member);
+  for (const auto& [name, member] : near_quantities) f(name, laws.*member);
+}
+
+NearJammingLaws read_near_jamming(Reader reader) {
+  NearJammingLaws laws;
+  for_each_row(laws, [&](const char* name, auto& row) {
+    row = read_group<std::remove_reference_t<decltype(row)>>(reader.object(name));
+  });
+  reader.finish();
+  return laws;
+}
+
+Json near_jamming_json(const NearJammingLaws& laws) {
+  Json json = Json::object();
+  for_each_row(laws, [&](const char* name, const auto& row) { json[name] = group_json(row); });
+  return json;
+}
 
 Json shear_json(const ShearLaws& shear) {
   Json json = Json::object();
@@ -257,6 +288,7 @@ ParameterSet ParameterSet::read(Reader reader) {
   set.isotropic = read_isotropic(reader.object_or_empty("isotropic"));
   if (auto object = maybe_object(reader, "shear")) set.shear = read_shear(*object);
   if (auto object = maybe_object(reader, "shear_axial")) set.shear_axial = read_shear(*object);
+  if (auto object = maybe_object(reader, "near_jamming")) set.near_jamming = read_near_jamming(*object);
   if (auto object = maybe_object(reader, "moduli")) set.moduli = read_moduli(*object);
   if (auto object = maybe_object(reader, "moduli_table")) set.moduli_table = read_moduli_table(*object);
   if (auto object = maybe_object(reader, "volumetric")) set.volumetric = read_group<VolumetricLaws>(*object);
@@ -275,6 +307,7 @@ Json ParameterSet::to_json() const {
     if (isotropic.contains(mode)) json["isotropic"][mode] = group_json(isotropic.at(mode));
   if (shear) json["shear"] = shear_json(*shear);
   if (shear_axial) json["shear_axial"] = shear_json(*shear_axial);
+  if (near_jamming) json["near_jamming"] = near_jamming_json(*near_jamming);
   if (moduli) {
     json["moduli"] = group_json(*moduli);
     if (moduli->a_F) json["moduli"]["a_F"] = parameter_json(*moduli->a_F);
@@ -305,6 +338,9 @@ std::vector<NamedParameter> ParameterSet::named() const {
   };
   add_shear("shear", shear);
   add_shear("shear_axial", shear_axial);
+  if (near_jamming)
+    for_each_row(*near_jamming,
+                 [&](const char* row, const auto& laws) { add(std::string("near_jamming.") + row, laws); });
   if (moduli) {
     add("moduli", *moduli);
     if (moduli->a_F) list.push_back({"moduli.a_F", &*moduli->a_F, any_number()});

@@ -48,6 +48,13 @@ struct ShearLaws {
   std::optional<SaturationLaw> s_max, beta_s, F_max, beta_F;
 };
 
+/// near_jamming: what the minimal form takes in place of isotropic and shear, all counted from phi_J.
+/// Eqs. 5.7 to 5.9 before and in steady shear (Table 5.1), Eq. 5.12 (Table 5.2).
+struct NearJammingLaws {
+  PackingLaw iso, d2;
+  SaturationLaw s_max, beta_s, F_max, beta_F;
+};
+
 /// moduli: Eqs. 4.11 to 4.15 (Table 4.1).
 struct ModuliLaws {
   Parameter p0, gamma_p, nu_c, g3, a_I, a_II, g_I, GB_max, Fv_min, Fv_alpha;
@@ -98,6 +105,7 @@ struct ParameterSet {
   std::map<std::string, PackingLaw> isotropic;  ///< by mode: iso, uni, d2, d3
   std::optional<ShearLaws> shear;               ///< of D2
   std::optional<ShearLaws> shear_axial;         ///< past the thesis: of axisymmetric strain (D3, UNI)
+  std::optional<NearJammingLaws> near_jamming;  ///< of chapter 5
   std::optional<ModuliLaws> moduli;
   std::optional<TabulatedLaws> moduli_table;
   std::optional<VolumetricLaws> volumetric;

@@ -97,13 +97,15 @@ void tell_beyond_saturation(const Record& record, const char* column, const char
                        where(record["nu"][row], record["eps_dev"][row]));
 }
 
-void conclude(Prediction& prediction, const Laws& laws, const std::vector<Leg>& legs, const Walked& walked,
+void conclude(Prediction& prediction, const Law& law, const std::vector<Leg>& legs, const Walked& walked,
               const std::vector<Event>& events) {
+  const Laws& laws = laws_of(law);
   prediction.status = walked.status;
   prediction.end = walked.end;
   tell_events(events, prediction.warnings);
   tell_beyond_saturation(prediction.record, "s_dev", "s_max", laws.s_max, prediction.warnings);
   tell_beyond_saturation(prediction.record, "F_dev", "F_max", laws.F_max, prediction.warnings);
+  if (std::holds_alternative<Memory>(law)) return;  // its P comes back to that of phi_J
   tell_drift(pressure_drift(legs, walked.P_at_ends), prediction.warnings);
 }
 
@@ -164,7 +166,7 @@ SensitivePrediction predict_with(const Seeds& seeds, const ParameterSet& paramet
     events.push_back({e.jammed, e.nu.value, e.eps_vol.value, e.eps_dev.value});
     result.events.push_back({e.jammed, widened(e.nu), widened(e.eps_vol), widened(e.eps_dev)});
   }
-  conclude(result.prediction, laws_of(start.law), legs, walked, events);
+  conclude(result.prediction, start.law, legs, walked, events);
   result.idle = idle_names(result.prediction.record, names);
   return result;
 }
@@ -181,7 +183,7 @@ Prediction predict(const ParameterSet& parameters, const Path& path, const std::
   const Walked walked = walk_legs(point, path, legs, samples, [&](std::size_t leg, const State& state) {
     prediction.record.append(row_of(point.law(), state, leg));
   });
-  conclude(prediction, laws_of(start.law), legs, walked, point.events());
+  conclude(prediction, start.law, legs, walked, point.events());
   return prediction;
 }
 
@@ -201,7 +203,7 @@ Prediction predict_controlled(const ParameterSet& parameters, const Path& path,
   visit(0, point.state());
   const WalkedPath walked = walk_controlled(point, tolerance, path, options.rows_per_leg, visit);
   for (const auto& warning : walked.warnings) prediction.warnings.push_back(warning);
-  conclude(prediction, laws_of(start.law), walked.legs,
+  conclude(prediction, start.law, walked.legs,
            {end_status(walked.status, point.state()), walked.P_at_ends, point.state()}, point.events());
   return prediction;
 }

@@ -11,6 +11,23 @@
 
 namespace grainlaw::model {
 
+namespace {
+
+/// Tables 5.1 and 5.2 in place of the laws of the whole range.
+void take_near_jamming(const ParameterSet& parameters, MinimalLaws& laws) {
+  for (const NamedParameter& entry : parameters.named())
+    if (entry.name.starts_with("near_jamming.")) check_finite(parameters, *entry.parameter);
+  const NearJammingLaws& near = *parameters.near_jamming;
+  laws.isotropic = near.iso.pressure();
+  laws.sheared = near.d2.pressure();
+  laws.s_max = near.s_max.values();
+  laws.beta_s = near.beta_s.values();
+  laws.F_max = near.F_max.values();
+  laws.beta_F = near.beta_F.values();
+}
+
+}  // namespace
+
 MinimalLaws minimal_laws(const ParameterSet& parameters) {
   const std::string who = std::string("the ") + minimal_name + " form";
   const Laws laws = laws_of(parameters, Form::reduced_closed);
@@ -26,6 +43,7 @@ MinimalLaws minimal_laws(const ParameterSet& parameters) {
   result.beta_s = laws.beta_s;
   result.F_max = laws.F_max;
   result.beta_F = laws.beta_F;
+  if (parameters.near_jamming) take_near_jamming(parameters, result);
   result.over = memory.over_compression();
   result.first = {memory.phi_SJ.value, memory.alpha.value, memory.eps0.value};
   result.again = {memory.phi_SJ.value, memory.alpha.value, memory.eps0_R.value};

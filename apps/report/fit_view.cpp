@@ -64,6 +64,11 @@ FitView read_fit(const Json& json) {
     fit.row = parts[1];
     fit.family = parts.size() > 2 ? parts[2] : fit.y_name;
   }
+  if (over_nu && parts[0] == "near_jamming") {  // near_jamming.d2.C_star, near_jamming.s_max
+    fit.group = parts[0];
+    fit.row = parts[1];
+    fit.family = parts.size() > 2 ? parts[2] : fit.y_name;
+  }
   if ((parts[0] == "moduli" || parts[0] == "memory" || parts[0] == "volumetric") && parts.size() > 1) {
     fit.group = parts[0];
     fit.family = parts[1];

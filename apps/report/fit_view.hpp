@@ -29,8 +29,10 @@ struct FitView {
   std::string name, law, role, mode;
   std::string
       family;  ///< of the isotropic laws: what follows the mode in the name, "C_star", "C_star_free_C0", …
-  std::string group;  ///< "isotropic", "shear" (Q over nu), "moduli", "memory", "" for any other
-  std::string row;    ///< the mode (isotropic), the quantity (shear), "" (moduli, memory)
+  std::string
+      group;  ///< "isotropic", "shear" (Q over nu), "near_jamming", "moduli", "memory", "" for any other
+  std::string
+      row;  ///< the mode (isotropic), the quantity (shear), either (near_jamming), "" (moduli, memory)
   std::string x_name, y_name, x_label, y_label;
   std::vector<FitPoints> data;
   FitPoints curve, thesis_curve;  ///< empty where there is none

@@ -144,12 +144,13 @@ Markup not_run(const std::vector<FitView>& fits) {
 }
 
 Markup quality(const std::vector<FitView>& fits) {
-  std::vector<const FitView*> isotropic, runs, saturation, moduli, other;
+  std::vector<const FitView*> isotropic, runs, saturation, moduli, near, other;
   for (const FitView& fit : fits) {
     if (fit.idle()) continue;
     auto& family = fit.group == "isotropic"         ? isotropic
                    : fit.group.starts_with("shear") ? saturation
                    : fit.group == "moduli"          ? moduli
+                   : fit.group == "near_jamming"    ? near
                    : fit.of_one_run()               ? runs
                                                     : other;
     family.push_back(&fit);
@@ -157,7 +158,8 @@ Markup quality(const std::vector<FitView>& fits) {
   return "<h3>Residual, condition, exit</h3>\n"_html + quality_of("Isotropic laws", isotropic) +
          quality_of("Shear of single runs", runs) +
          quality_of("Saturation over volume fraction", saturation) +
-         quality_of("Small-strain moduli", moduli) + quality_of("Other fits", other) + not_run(fits) +
+         quality_of("Small-strain moduli", moduli) + quality_of("Near jamming", near) +
+         quality_of("Other fits", other) + not_run(fits) +
          element("p",
                  "Points in brackets: how many independent points the rows are worth, since neighbouring "
                  "rows of one run resemble each other. Residual: root mean square of data − fit, in the unit "
@@ -186,7 +188,8 @@ Markup fits_section(const Inputs& inputs, const std::vector<FitView>& fits) {
   return "<h3>Isotropic laws</h3>\n"_html + isotropic_figures(inputs, fits) +
          "<h3>Shear at constant volume</h3>\n"_html + shear_run_figures(inputs, fits) +
          saturation_figure(fits) + moduli_figures(inputs, fits) + memory_figures(fits) +
-         memory_states_figure(inputs, fits) + other_figures(fits) + quality(fits) + left_out(inputs);
+         memory_states_figure(inputs, fits) + minimal_figure(inputs) + other_figures(fits) + quality(fits) +
+         left_out(inputs);
 }
 
 }  // namespace grainlaw::report

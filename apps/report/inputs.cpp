@@ -183,10 +183,10 @@ bool outdated(const Inputs& inputs) {
          made_with != digest(read_file(inputs.dir / "parameters.json"));
 }
 
-void read_predictions(Inputs& inputs) {
-  inputs.predictions_outdated = outdated(inputs);
-  const Json& entries = value_in(inputs.predictions, "predictions");
-  if (!entries.is_array()) return;
+std::vector<PredictedRun> predicted_runs(Inputs& inputs, const char* key) {
+  std::vector<PredictedRun> runs;
+  const Json& entries = value_in(inputs.predictions, key);
+  if (!entries.is_array()) return runs;
   for (const Json& entry : entries) {
     PredictedRun run;
     run.entry = entry;
@@ -194,8 +194,15 @@ void read_predictions(Inputs& inputs) {
     run.form = text_in(entry, "form");
     const std::string file = text_in(entry, "file");
     if (stays_inside(file)) run.record = read_record(inputs, file);
-    inputs.predicted.push_back(std::move(run));
+    runs.push_back(std::move(run));
   }
+  return runs;
+}
+
+void read_predictions(Inputs& inputs) {
+  inputs.predictions_outdated = outdated(inputs);
+  inputs.predicted = predicted_runs(inputs, "predictions");
+  inputs.predicted_memory = predicted_runs(inputs, "memory");
 }
 
 }  // namespace

@@ -46,6 +46,7 @@ struct Inputs {
   Json campaign, parameters, fits, predictions, timing;
   std::vector<Run> runs;  ///< in the order of the campaign, then by seed
   std::vector<PredictedRun> predicted;
+  std::vector<PredictedRun> predicted_memory;  ///< tests of role memory, which the fits have read
   std::vector<Gap> gaps;
   /// True if predictions.json was made with another parameter set than parameters.json holds now.
   bool predictions_outdated = false;

@@ -70,7 +70,7 @@ void read_free_C0(Entries& entries, const FitView& fit) {
 
 Entries collect(const Inputs& inputs, const std::vector<FitView>& fits) {
   Entries entries;
-  for (const char* group : {"isotropic", "shear", "shear_axial"}) {
+  for (const char* group : {"isotropic", "shear", "shear_axial", "near_jamming"}) {
     const Json& rows = value_in(inputs.parameters, group);
     if (!rows.is_object()) continue;
     for (const auto& [row, json] : rows.items()) read_row(entries, group, row, json);
@@ -151,7 +151,9 @@ std::vector<std::string> rows_of(const Entries& entries, const std::string& grou
 
 /// A table with a column per row of the group (mode or quantity) and a line per parameter.
 Markup matrix(const Entries& entries, const std::string& group, const std::vector<std::string>& rows,
-              const std::vector<Markup>& heads, const std::vector<std::string>& names) {
+              const std::vector<Markup>& heads, const std::vector<std::string>& names,
+              const std::string& letters = "") {
+  const std::string& alphabet = letters.empty() ? group : letters;
   Table table;
   table.column("Parameter"_html);
   for (const Markup& head : heads) table.column(head);
@@ -161,8 +163,8 @@ Markup matrix(const Entries& entries, const std::string& group, const std::vecto
           return entries.contains({g, row, n});
         });
     if (!known) continue;
-    std::vector<Markup> cells{name == "C0_free" ? symbol("C0", group) + ", left free"_html
-                                                : symbol(name, group)};
+    std::vector<Markup> cells{name == "C0_free" ? symbol("C0", alphabet) + ", left free"_html
+                                                : symbol(name, alphabet)};
     for (const std::string& row : rows) cells.push_back(cell(entries, {group, row, name}));
     table.row(cells);
   }
@@ -235,6 +237,26 @@ Markup memory_table(const Entries& entries) {
          matrix(entries, "memory", {""}, {"Value"_html},
                 {"phi_SJ", "alpha_max", "alpha_phi", "mu", "beta", "alpha", "eps0", "eps0_R", "phi_cr",
                  "eps_c", "hold"});
+}
+
+/// Tables 5.1 and 5.2; nothing where the fits have no memory.
+Markup near_jamming_tables(const Entries& entries) {
+  std::vector<std::string> columns, quantities;
+  for (const char* row : {"iso", "d2", "d2_at_rest"})
+    if (row_exists(entries, "near_jamming", row)) columns.emplace_back(row);
+  for (const char* row : {"s_max", "beta_s", "F_max", "beta_F"})
+    if (row_exists(entries, "near_jamming", row)) quantities.emplace_back(row);
+  if (columns.empty() || quantities.empty()) return {};
+  std::vector<Markup> heads, shear_heads;
+  for (const std::string& column : columns)
+    heads.push_back(column == "iso"  ? "isotropic"_html
+                    : column == "d2" ? "shear"_html
+                                     : "shear, at rest"_html);
+  for (const std::string& quantity : quantities) shear_heads.push_back(symbol(quantity));
+  return "<h3>Near jamming (Eqs. 5.7 – 5.12), beside Tables 5.1 and 5.2</h3>\n"_html +
+         matrix(entries, "near_jamming", columns, heads,
+                {"nu_c", "p0", "gamma_p", "nu_c_contacts", "C0", "C1", "alpha", "phi_c", "phi_v"}) +
+         matrix(entries, "near_jamming", quantities, shear_heads, {"Q_max", "Q_v", "alpha", "nu_c"}, "shear");
 }
 
 /// A number that was not fitted here, with every row that shares it.
@@ -316,7 +338,7 @@ Markup parameter_tables(const Inputs& inputs, const std::vector<FitView>& fits) 
   const Entries entries = collect(inputs, fits);
   if (entries.empty()) return absent("No parameters: neither parameters.json nor fits.json holds any.");
   Markup tables = isotropic_table(inputs, entries) + shear_tables(entries) + moduli_table(entries) +
-                  volumetric_table(entries) + memory_table(entries);
+                  volumetric_table(entries) + memory_table(entries) + near_jamming_tables(entries);
   tables += element(
       "p",
       "Each cell: our value ± one standard error; under it the thesis's value and our difference from it in "

@@ -40,6 +40,8 @@ Markup memory_figures(const std::vector<FitView>& fits);
 /// The phase diagram of packings at rest along shear, their stresses, and what shear to and fro does to the
 /// jamming density; nothing where no test has any.
 Markup memory_states_figure(const Inputs& inputs, const std::vector<FitView>& fits);
+/// Fig. 5.4: cycles of compression and of shear by the minimal form; nothing where no prediction has them.
+Markup minimal_figure(const Inputs& inputs);
 /// Fits of any other kind, one figure each.
 Markup other_figures(const std::vector<FitView>& fits);
 

@@ -171,7 +171,8 @@ const std::vector<SymbolGroup>& symbol_groups() {
 }
 
 const Symbol* find_symbol(std::string_view name, std::string_view group) {
-  if (group == "shear_axial") group = "shear";  // the same letters, of another mode
+  if (group == "shear_axial") group = "shear";       // the same letters, of another mode
+  if (group == "near_jamming") group = "isotropic";  // its shear laws: group shear
   const std::string full = group.empty() ? std::string(name) : std::string(group) + "." + std::string(name);
   const Symbol* plain = nullptr;
   for (const SymbolGroup& part : symbol_groups()) {

@@ -14,7 +14,7 @@ constexpr double flat = 1e-6;  ///< det Y over (tr Y/3)^3 below which neighbours
 
 Nonaffine::Row row_of(const View& view) {
   const Grains& grains = view.grains();
-  Nonaffine::Row row{view.cell(), std::vector<Quad>(grains.count())};
+  Nonaffine::Row row{view.cell(), Quads(grains.count())};
   row.cell.reduce();
   for (std::size_t i = 0; i < grains.count(); ++i) {
     const Quad& p = grains.place[i];
@@ -67,7 +67,7 @@ void for_each_neighbour(const Nonaffine::Row& before, double wanted_gap, F&& f) 
   const double range = std::min(widest + wanted_gap, cell.narrowest());
   const LinkedCells cells(before.place, cell, range);
   const std::vector<std::uint32_t>& order = cells.order();
-  std::vector<Quad> place(order.size());
+  Quads place(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) place[i] = before.place[order[i]];
   NearPairs pairs;
   cells.list_pairs(place, cell, range - widest, pairs);

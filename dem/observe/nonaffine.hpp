@@ -25,8 +25,8 @@ class Nonaffine {
 
   /// A row's grains in the order of the State, so that sorting does not matter.
   struct Row {
-    Cell cell;                ///< reduced
-    std::vector<Quad> place;  ///< wrapped into the box | radius, mm; empty before the first row
+    Cell cell;    ///< reduced
+    Quads place;  ///< wrapped into the box | radius, mm; empty before the first row
   };
 
   /// For a run that is interrupted between two rows.

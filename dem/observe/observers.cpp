@@ -62,7 +62,7 @@ Observers::Observers(const std::vector<std::string>& asked) : columns_(observe::
   });
 }
 
-std::vector<double> Observers::observe(const Dynamics& dynamics, const std::vector<Quad>& velocity,
+std::vector<double> Observers::observe(const Dynamics& dynamics, const Quads& velocity,
                                        const Measurement& measured, const Material& material,
                                        const SignConvention& sign, std::size_t segment, std::size_t row) {
   std::vector<double> values;

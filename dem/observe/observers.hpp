@@ -64,9 +64,9 @@ class Observers {
 
   const std::vector<std::string>& columns() const { return columns_; }
   /// Values of columns() for row `row` of the record; tables are filled too.
-  std::vector<double> observe(const Dynamics& dynamics, const std::vector<Quad>& velocity,
-                              const Measurement& measured, const Material& material,
-                              const SignConvention& sign, std::size_t segment, std::size_t row);
+  std::vector<double> observe(const Dynamics& dynamics, const Quads& velocity, const Measurement& measured,
+                              const Material& material, const SignConvention& sign, std::size_t segment,
+                              std::size_t row);
   const std::vector<Table>& tables() const { return tables_; }
 
   /// What the rows to come depend on, and the tables so far, for a run that is interrupted between two rows.

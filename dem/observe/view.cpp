@@ -2,7 +2,7 @@
 
 namespace grainlaw::dem::observe {
 
-Network Network::gather(const Dynamics& dynamics, const std::vector<Quad>& velocity) {
+Network Network::gather(const Dynamics& dynamics, const Quads& velocity) {
   Network network;
   network.contacts_of.assign(dynamics.count(), 0);
   const Pairs& pairs = dynamics.neighbours().pairs();

@@ -34,13 +34,13 @@ struct Network {
   double mean_force = undefined;           ///< over all contacts; undefined without any
   double mean_overlap = undefined;
 
-  static Network gather(const Dynamics& dynamics, const std::vector<Quad>& velocity);
+  static Network gather(const Dynamics& dynamics, const Quads& velocity);
 };
 
 struct View {
   const Material& material;
   const Dynamics& dynamics;
-  const std::vector<Quad>& velocity;  ///< fluctuation velocity, in the order of the grains
+  const Quads& velocity;  ///< fluctuation velocity, in the order of the grains
   const Measurement& measured;
   const SignConvention& sign;
   std::size_t segment;

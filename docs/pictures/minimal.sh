@@ -13,11 +13,8 @@ for M in 1 300; do
   law data/thesis/near-jamming.json "$curves/iso-$M.json" --form minimal -o "$curves/iso-$M.csv"
 done
 law data/thesis/near-jamming.json data/paths/shear-jamming.json --form minimal --rows 400 -o "$curves/shear.csv"
-# Section 5.H wants phi_cr, which the set of grains lacks: within the error of that of docs/memory.md.
-sed 's/"memory": {/&"phi_cr": {"value": 0.6631, "stderr": 0.0004, "unit": "1", "source": "fit"},/' \
-  data/grains/w-3.json >"$curves/grains.json"
 for form in coupled memory minimal; do
-  law "$curves/grains.json" data/records/base/records/d2-cycle-0.685-s1 --form $form -o "$curves/d2-$form.csv"
-  law "$curves/grains.json" data/records/base/records/iso-s1 --form $form -o "$curves/oc-$form.csv"
+  law data/grains/w-3-memory.json data/records/base/records/d2-cycle-0.685-s1 --form $form -o "$curves/d2-$form.csv"
+  law data/grains/w-3-memory.json data/records/base/records/iso-s1 --form $form -o "$curves/oc-$form.csv"
 done
 gnuplot -e "curves='$curves'; records='data/records/base/records'" docs/pictures/minimal.gp >docs/pictures/minimal.png

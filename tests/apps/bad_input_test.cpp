@@ -173,6 +173,8 @@ TEST_F(BadInput, AnOutputThatIsAnInput) {
                       {"--fits: must be another file than -o"}));
   EXPECT_TRUE(
       refuses(run({"fit", "r", "-o", "f.json", "--fits", "no/f.json"}), {"--fits: must lie in a directory"}));
+  EXPECT_TRUE(refuses(run({"fit", "r", "-o", "f.json", "--memory", "no"}),
+                      {"--memory: must be a directory with over_compression.csv, got no"}));
   EXPECT_EQ(read("r/one/record.csv"), record);
   EXPECT_EQ(read("p.json"), parameters);
   EXPECT_FALSE(fs::exists(folder / "f.json"));

@@ -1,9 +1,11 @@
-// Cycles that no fit has read: D2 between +-0.1 near jamming, and UNI through jamming and back, the mixed
-// test of memory. Errors of the forms with the numbers of data/grains/w-3.json.
+// Cycles that no fit of eps_c has read: D2 between +-0.1 near jamming and between +-0.4 of a third packing, and
+// UNI through jamming and back, the mixed test of memory. Errors of the forms with the numbers of
+// data/grains/w-3.json.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "grainlaw/calibrate/predict_records.hpp"
 #include "grainlaw/dem/scene.hpp"
@@ -70,6 +72,42 @@ TEST(UniCycles, MemoryHoldsThePressure) {
     EXPECT_GT(coupled.P, 2 * memory.P);
     EXPECT_GT(minimal.P, 2 * memory.P);
   }
+}
+
+/// D2 between +-0.4 at nu = 0.75 of three packings that differ in nothing but their seed.
+const std::vector<std::string>& packings() {
+  static const std::vector<std::string> dirs{"base/records/d2-cycle-0.75-s1", "base/records/d2-cycle-0.75-s2",
+                                             "third-cycle/d2-cycle-0.75-s3"};
+  return dirs;
+}
+
+std::vector<double> pressure_of(const std::string& test) {
+  return Record::read_csv(GRAINLAW_DATA_DIR "/records/" + test + "/record.csv", {"P"})["P"];
+}
+
+/// How far the mean of the two others is from this one, row by row.
+double error_of_the_others(std::size_t packing) {
+  const auto &a = pressure_of(packings()[(packing + 1) % 3]), &b = pressure_of(packings()[(packing + 2) % 3]);
+  std::vector<double> mean(a.size());
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = (a[i] + b[i]) / 2;
+  return relative_distance(mean, pressure_of(packings()[packing]));
+}
+
+/// At this density P on the cycle is a packing's own: two packings foretell the third no better than the law
+/// does, and neither is five times better than the coupled form.
+TEST(ThirdCycle, TwoPackingsSayNoMoreOfAThirdThanMemory) {
+  double others = 0, memory = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    SCOPED_TRACE(packings()[i]);
+    const double coupled = errors_of(packings()[i], "coupled").P;
+    EXPECT_GT(coupled / error_of_the_others(i), 1.5);
+    EXPECT_LT(coupled / error_of_the_others(i), 2.2);
+    EXPECT_LT(errors_of(packings()[i], "memory").P, 1.05 * error_of_the_others(i));
+    others += error_of_the_others(i) / 3;
+    memory += errors_of(packings()[i], "memory").P / 3;
+  }
+  EXPECT_NEAR(others, 0.0058, 1e-4);
+  EXPECT_NEAR(memory, 0.0056, 1e-4);
 }
 
 }  // namespace

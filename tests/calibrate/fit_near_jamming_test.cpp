@@ -32,7 +32,7 @@ KnownValue phi_SJ() {
 NearJammingFit fitted_up_to(double range) {
   static const RecordFolder base = read_records(data_dir / "records" / "base");
   const Reference table_5_2(near_jamming_set(), base.tests.front().material);
-  NearJammingKnown known{{{"gamma_p", {0, 0.1}}}, {}};
+  NearJammingKnown known{{{"gamma_p", {0, 0.1}}}, {{"gamma_p", {0, 0.1}}}, {}};
   for (const ShearQuantity q : shear_quantities) known.shear[q] = table_5_2.shear(name_of(q));
   const KnownValue from = phi_SJ();
   return fit_near_jamming(near_jamming_data(base.tests, rests(), from.value * (1 + range), {}), from, known);

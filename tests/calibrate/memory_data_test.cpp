@@ -53,24 +53,25 @@ TEST(MemoryData, LawsRefitted) {
   const MemoryFit fit = fit_memory(cycles(), runs(), thesis(), rest().by_pressure);
   EXPECT_NEAR(fit.phi_SJ.value, 0.6572, 1e-4);
   EXPECT_NEAR(fit.phi_SJ.error, 0.0002, 1e-4);
-  EXPECT_NEAR(fit.phi_SJ.by_over_compression.value, 0.6538, 1e-4);
+  EXPECT_NEAR(fit.phi_SJ.by_over_compression.value, 0.6545, 1e-4);
   EXPECT_FALSE(fit.phi_SJ.by_shear.known());  // on the bound that the loosest run that jams sets
-  expect_printed(fit.over_compression["alpha_max"], 0.0200, 1e-4);
-  expect_printed(fit.over_compression["alpha_phi"], 0.368, 5e-3);
-  expect_printed(fit.over_compression["mu"], 1.84, 5e-2);
-  expect_printed(fit.over_compression["beta"], 0.306, 5e-3);
+  expect_printed(fit.over_compression["alpha_max"], 0.0211, 1e-4);
+  expect_printed(fit.over_compression["alpha_phi"], 0.422, 5e-3);
+  expect_printed(fit.over_compression["mu"], 1.78, 5e-2);
+  expect_printed(fit.over_compression["beta"], 0.377, 5e-3);
   expect_printed(fit.shear["alpha"], 1.52, 1e-2);
   expect_printed(fit.shear["eps0"], 0.113, 1e-3);
   expect_printed(fit.reversal["eps0_R"], 0.200, 1e-3);
   expect_printed(fit.reversal["phi_cr"], 0.6629, 1e-4);
 }
 
-/// By the scatter alone, all but the exponent of the amplitude, mu and eps0_R; the exponent comes near within
-/// what N and rate cost (1e-3 of phi_J).
-TEST(MemoryData, AgreesWithTheThesisWithinTwoErrorsButForThree) {
+/// By the scatter alone, all but the exponent of the amplitude and eps0_R (mu by almost two errors); the
+/// exponent comes near within what N and rate cost (1e-3 of phi_J).
+TEST(MemoryData, AgreesWithTheThesisWithinTwoErrorsButForTwo) {
   const MemoryFit fit = fit_memory(cycles(), runs(), thesis(), rest().by_pressure);
   for (const auto& [law, name, value] : {std::tuple{&fit.over_compression, "alpha_max", 0.02},
                                          {&fit.over_compression, "beta", 0.3},
+                                         {&fit.over_compression, "mu", 1.0},
                                          {&fit.shear, "alpha", 1.37},
                                          {&fit.shear, "eps0", 0.102}}) {
     const FitEstimate& e = (*law)[name];
@@ -79,7 +80,6 @@ TEST(MemoryData, AgreesWithTheThesisWithinTwoErrorsButForThree) {
   const FitEstimate& exponent = fit.over_compression["alpha_phi"];
   EXPECT_GT(exponent.value - 0.3, 3 * *exponent.stderr_);
   EXPECT_NEAR((fit.reversal.value("eps0_R") - 0.17) / *fit.reversal["eps0_R"].stderr_, 2.1, 0.1);
-  EXPECT_GT(fit.over_compression.value("mu") - 1, 2 * *fit.over_compression["mu"].stderr_);
 }
 
 /// The fits with all phi_J off by what N and rate cost.
@@ -93,10 +93,10 @@ MemoryFit shifted(double by) {
 
 TEST(MemoryData, TheSystematicErrorIsLargerThanTheScatter) {
   const MemoryFit high = shifted(1e-3), low = shifted(-1e-3);
-  EXPECT_NEAR(high.over_compression.value("alpha_phi"), 0.328, 5e-3);
-  EXPECT_NEAR(low.over_compression.value("alpha_phi"), 0.418, 5e-3);
-  EXPECT_NEAR(high.over_compression.value("alpha_max"), 0.0205, 2e-4);
-  EXPECT_NEAR(low.over_compression.value("alpha_max"), 0.0197, 2e-4);
+  EXPECT_NEAR(high.over_compression.value("alpha_phi"), 0.372, 5e-3);
+  EXPECT_NEAR(low.over_compression.value("alpha_phi"), 0.485, 5e-3);
+  EXPECT_NEAR(high.over_compression.value("alpha_max"), 0.0213, 2e-4);
+  EXPECT_NEAR(low.over_compression.value("alpha_max"), 0.0211, 2e-4);
   EXPECT_NEAR(high.shear.value("alpha"), 1.29, 1e-2);
   EXPECT_NEAR(low.shear.value("alpha"), 1.86, 1e-2);
   EXPECT_NEAR(high.reversal.value("phi_cr"), 0.6632, 1e-4);
@@ -217,9 +217,9 @@ TEST(MemoryData, TheGrowthLawsCannotBeToldApart) {
 TEST(MemoryData, MoreCompressionAndMoreCyclesPackDenser) {
   const auto all = cycles();
   double last = 0;
-  for (const double phi_max : {0.67, 0.68, 0.73, 0.82, 0.90}) {
+  for (const double phi_max : {0.67, 0.68, 0.70, 0.73, 0.77, 0.82, 0.90}) {
     const double first = mean_density(all, phi_max, 1);
-    EXPECT_GT(mean_density(all, phi_max, 30), first + 5e-4) << phi_max;
+    EXPECT_GT(mean_density(all, phi_max, 30), first + 4e-4) << phi_max;
     EXPECT_GT(mean_density(all, phi_max, 30), last) << phi_max;
     last = mean_density(all, phi_max, 30);
   }
@@ -236,11 +236,14 @@ std::vector<double> last_cycles(const std::vector<CycleDensity>& all, double phi
   return values;
 }
 
-/// Small packings: cycles up to 0.68 come to repeat themselves, from 0.73 on they do not.
+/// Small packings: cycles up to 0.68 come to repeat themselves, from 0.73 on they do not; to 0.70 one of
+/// three does not.
 TEST(MemoryData, SmallAmplitudesEndInCyclesThatRepeat) {
   const auto all = cycles();
   for (const char* seed : {"1", "2", "3"}) {
     EXPECT_LT(deviation(last_cycles(all, 0.68, seed, 20)), 4e-5) << seed;
+    EXPECT_LT(deviation(last_cycles(all, 0.67, seed, 20)), 4e-5) << seed;
+    EXPECT_EQ(deviation(last_cycles(all, 0.70, seed, 20)) < 4e-5, seed != std::string("3")) << seed;
     EXPECT_GT(deviation(last_cycles(all, 0.73, seed, 20)), 1e-4) << seed;
   }
 }
@@ -311,7 +314,7 @@ TEST(MemoryData, ThreeAmplitudesAreEnoughForTheStrength) {
   });
   const MemoryFit fit = fit_memory(few, {}, thesis());
   EXPECT_TRUE(fit.over_compression["alpha_max"].determined);
-  EXPECT_LT(std::abs(fit.over_compression.value("alpha_max") - 0.0200),
+  EXPECT_LT(std::abs(fit.over_compression.value("alpha_max") - 0.0211),
             3 * *fit.over_compression["alpha_max"].stderr_);
   EXPECT_FALSE(fit.shear["eps0"].determined);  // no runs: held at the thesis's
 }

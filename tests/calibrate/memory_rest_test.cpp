@@ -179,8 +179,8 @@ TEST(MemoryAccount, TellsCyclesShearRestsAndTapsApart) {
       whole_record("astray", R"([{"mode": "iso", "controls": {"nu": 0.64}}])", "iso", 0.68,
                    RecordOrigin{"gone", 0})};
   for (TestRecord* sheared : {&folder.tests[4], &folder.tests[5]}) sheared->sheared_along = StrainTensor{};
-  const Account account =
-      fit_all(folder, Reference(model::ParameterSet::load(thesis_file()), folder.tests[0].material), {});
+  const Account account = fit_all(
+      folder, Reference(model::ParameterSet::load(thesis_file()), folder.tests[0].material), {}, {}, {});
   ASSERT_EQ(account.cycles.size(), 1u);
   EXPECT_EQ(account.cycles[0].test, "oc");
   ASSERT_EQ(account.shear_jammings.size(), 1u);

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Inner {
-  std::vector<Quad> quads;
+  Quads quads;
   std::string name;
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {

@@ -46,9 +46,9 @@ Scene scene_of(const std::string& json) {
   return Scene::read(Reader(parse_json(json, "scene.json"), "scene.json"), "");
 }
 
-template <class T>
-bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+template <class List>
+bool same_bits(const List& a, const List& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
 }
 
 class Checkpoints : public testing::Test {

@@ -110,9 +110,6 @@ TEST_F(ElementTest, RecordOfAllModes) {
   EXPECT_NEAR(r["P"][11], 0.0509, 4 * 0.0018);
   EXPECT_NEAR(r["C"][11], 8.38, 4 * 0.12);
   EXPECT_LT(r["Ek_over_Ep"][11], 1e-5);
-  // D2 compresses y and extends x
-  EXPECT_GT(r["syy"][21], r["sxx"][21]);
-  EXPECT_GT(r["s_dev"][21], 0.05);
 
   const auto frames = list_frames(dir / "snapshots.h5");
   ASSERT_EQ(frames.size(), 3u);
@@ -121,6 +118,25 @@ TEST_F(ElementTest, RecordOfAllModes) {
   EXPECT_NEAR(frames[1].nu, 0.75, 1e-12);
   EXPECT_NEAR(frames[2].eps_dev, 0.03, 1e-5);
   EXPECT_EQ(frames[2].segment, 2u);
+}
+
+TEST_F(ElementTest, D2CompressesYAndExtendsX) {
+  // A packing of 100 grains is anisotropic by chance by as much as this strain makes it: over 24 seeds s_dev
+  // ends at 0.17, standard deviation 0.05 to 0.11. So the mean over eight of them is tested, four of its own
+  // away from 0.
+  double yy_over_xx = 0, s_dev = 0;
+  for (int seed = 1; seed <= 8; ++seed) {
+    const Scene scene = scene_of(R"({"preparation": {"count": 100, "seed": )" + std::to_string(seed) +
+                                 R"(, "nu": 0.75, "rate": 1e-3, "relax": {"duration": 100}},
+                   "path": {"segments": [{"mode": "d2", "amount": 0.05, "rate": 1e-4}]}, "measure": {"rows": 1}})");
+    const fs::path to = dir / std::to_string(seed);
+    run_element_test(scene, to);
+    const Record r = Record::read_csv(to / "record.csv", record_columns());
+    yy_over_xx += std::log(r["syy"][1] / r["sxx"][1]) / 8;
+    s_dev += r["s_dev"][1] / 8;
+  }
+  EXPECT_GT(yy_over_xx, 0);
+  EXPECT_GT(s_dev, 0.05);
 }
 
 TEST_F(ElementTest, SameSceneSameBitsWhateverIsWritten) {

@@ -9,13 +9,16 @@
 #include <algorithm>
 
 #include "grainlaw/model/light/light_law.hpp"
+#include "grainlaw/model/predict.hpp"
 #include "grainlaw/model/start.hpp"
 #include "memory_fixture.hpp"
 
 namespace grainlaw::model {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr double eps_c = 0.0423;
 
@@ -293,6 +296,36 @@ TEST(Memory, TangentThroughShearJamming) {
       EXPECT_NEAR(tangent.sigma_dev[0], (v_from.sigma_dev - v_down.sigma_dev) / v_step, 1e-5);
       EXPECT_NEAR(tangent.sigma_dev[1], (e_up.sigma_dev - e_down.sigma_dev) / (2 * step), 1e-5);
     }
+}
+
+/// What is said of P that drifts is true of Eq. 4.16 alone.
+TEST(Memory, ThatPDriftsIsNotSaidOfIt) {
+  const Path cycles = path_of(R"({"start": {"nu": 0.69}, "segments": [{"repeat": 3, "segments": [
+      {"mode": "d2", "amount": 0.05}, {"mode": "d2", "amount": -0.05}]}]})");
+  PredictOptions options;
+  EXPECT_THAT(predict(with_memory(), cycles, options).warnings, Contains(HasSubstr("restoring term")));
+  options.form = Form::memory;
+  EXPECT_THAT(predict(with_memory(), cycles, options).warnings, Not(Contains(HasSubstr("restoring term"))));
+}
+
+TEST(Memory, AHoldOfNothingIsNone) {
+  const Path cycle = path_of(R"({"start": {"nu": 0.69}, "segments": [
+      {"mode": "d2", "amount": 0.3}, {"mode": "d2", "amount": -0.3}]})");
+  ParameterSet set = with_memory();
+  const auto run = [&](const ParameterSet& with) {
+    PredictOptions options;
+    options.form = Form::memory;
+    return predict(with, cycle, options).record;
+  };
+  const Record without = run(set);
+  set.memory->hold.emplace().value = 0.4;
+  EXPECT_NE(run(set)["F_dev"].back(), without["F_dev"].back());
+  set.memory->hold->value = 0;
+  const auto read = ParameterSet::read(Reader(set.to_json(), "written"));
+  const Record nothing = run(read);
+  for (const char* column : {"P", "sigma_dev", "F_dev"})
+    for (std::size_t row = 0; row < nothing.rows(); ++row)
+      EXPECT_EQ(nothing[column][row], without[column][row]) << column << ' ' << row;
 }
 
 TEST(Memory, StartsFromPressureOrJammingDensityOrCompression) {

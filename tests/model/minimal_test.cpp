@@ -142,6 +142,93 @@ TEST(Minimal, BelowTheShearJammingDensityNothingJams) {
   }
 }
 
+/// Exactly at phi_J nothing pushes; any shear jams it, any decompression unjams it again.
+TEST(Minimal, ExactlyAtTheJammingDensity) {
+  const Record shear =
+      run(R"({"start": {"nu": 0.6652, "phi_J": 0.6652}, "segments": [{"mode": "d2", "amount": 1e-6}]})")
+          .record;
+  EXPECT_EQ(shear["P"].front(), 0);
+  EXPECT_GT(shear["P"].back(), 0);
+  const Record compressed = run(R"({"start": {"nu": 0.6652, "phi_J": 0.6652}, "segments": [
+      {"mode": "iso", "amount": 1e-3}, {"mode": "iso", "amount": -2e-3}]})",
+                                1)
+                                .record;
+  EXPECT_GT(compressed["P"][1], 0);
+  EXPECT_EQ(compressed["P"][2], 0);
+}
+
+/// At phi_cr itself a reversal takes P away, and shear on brings it back from 0.
+TEST(Minimal, ExactlyAtTheCriticalDensity) {
+  for (const auto& [nu, unjams] : {std::pair{0.6621, true}, {std::nextafter(0.6621, 1.0), false}}) {
+    const Record record = run(R"({"start": {"nu": )" + to_text(nu) + R"(, "phi_J": 0.6652}, "segments": [
+        {"mode": "d2", "amount": 0.3}, {"mode": "d2", "amount": -1e-9}, {"mode": "d2", "amount": -0.4}]})",
+                              1)
+                              .record;
+    EXPECT_GT(record["P"][1], 0);
+    EXPECT_EQ(record["P"][2] < 1e-12, unjams) << nu;
+    EXPECT_GT(record["P"][3], 0);
+  }
+}
+
+/// A reversal where a reversal has unjammed it begins Eq. 5.13 anew.
+TEST(Minimal, ReversalInTheFragileRegime) {
+  const Record record = run(R"({"start": {"nu": 0.66, "phi_J": 0.6652}, "segments": [
+      {"mode": "d2", "amount": 0.3}, {"mode": "d2", "amount": -0.02}, {"mode": "d2", "amount": 0.02},
+      {"mode": "d2", "amount": 0.3}]})",
+                            1)
+                            .record;
+  EXPECT_GT(record["P"][1], 0);
+  EXPECT_EQ(record["P"][2], 0);
+  EXPECT_EQ(record["P"][3], 0);
+  EXPECT_NEAR(record["phi_J"][3], 0.6567 + (0.6621 - 0.6567) * std::exp(-std::pow(0.02 / 0.17, 1.37)), 1e-12);
+  EXPECT_GT(record["P"][4], 0);
+}
+
+/// M = 0, phi_max < phi_SJ, 10^4 cycles, one huge compression.
+TEST(Minimal, CompressionsOfEverySize) {
+  EXPECT_EQ(run(R"({"start": {"nu": 0.64}, "segments": [{"mode": "d2", "amount": 1}]})").end.phi_J, 0.6567);
+  EXPECT_EQ(run(R"({"start": {"nu": 0.64}, "segments": [{"mode": "iso", "controls": {"nu": 0.65}},
+      {"mode": "iso", "controls": {"nu": 0.64}}]})")
+                .end.phi_J,
+            0.6567);
+  const auto over = near_jamming().memory->over_compression();
+  EXPECT_NEAR(run(R"({"start": {"nu": 0.64}, "segments": [{"repeat": 10000, "segments": [
+      {"mode": "iso", "controls": {"nu": 0.73}}, {"mode": "iso", "controls": {"nu": 0.64}}]}]})",
+                  1)
+                  .end.phi_J,
+              jamming_density_after(over, 0.73, 1e4), 2e-6);
+  const Prediction huge =
+      run(R"({"start": {"nu": 0.64}, "segments": [{"mode": "iso", "controls": {"nu": 0.99}},
+      {"mode": "d2", "amount": 0.5}, {"mode": "iso", "controls": {"nu": 0.64}}]})",
+          1);
+  EXPECT_GT(huge.record["P"][1], 0.2);
+  EXPECT_LT(huge.end.phi_J, jamming_density_after(over, 0.99, 1.0));
+  EXPECT_FALSE(huge.end.jammed);
+}
+
+/// Group near_jamming stands in place of isotropic and shear, and only there.
+TEST(Minimal, NumbersNearJammingTakeThePlaceOfThoseOfTheWholeRange) {
+  const ParameterSet tables = near_jamming();
+  ParameterSet set = thesis();
+  set.memory = tables.memory;
+  const Record whole = predict_minimal(set, path_of(shear_cycle)).record;
+  set.near_jamming =
+      NearJammingLaws{tables.isotropic.at("iso"), tables.isotropic.at("d2"), *tables.shear->s_max,
+                      *tables.shear->beta_s,      *tables.shear->F_max,      *tables.shear->beta_F};
+  const auto again = ParameterSet::read(Reader(set.to_json(), "written"));
+  const Record near = predict_minimal(again, path_of(shear_cycle)).record,
+               expected = predict_minimal(tables, path_of(shear_cycle)).record;
+  for (const char* column : {"P", "sigma_dev", "F_dev", "C", "f_NR", "phi_J"})
+    for (std::size_t row = 0; row < near.rows(); ++row)
+      EXPECT_EQ(near[column][row], expected[column][row]) << column << ' ' << row;
+  EXPECT_GT(std::abs(whole["P"].back() - near["P"].back()), 1e-5);
+  const Path shear = path_of(R"({"start": {"nu": 0.7}, "segments": [{"mode": "d2", "amount": 0.1}]})");
+  EXPECT_EQ(predict(again, shear).record["P"].back(), predict(thesis(), shear).record["P"].back());
+  set.near_jamming->F_max.Q_v.value = std::nan("");
+  EXPECT_THAT(refusal([&] { minimal_laws(set); }),
+              HasSubstr("near_jamming.F_max.Q_v: must be a finite number"));
+}
+
 TEST(Minimal, WhatItCannotTakeIsRefused) {
   const auto refused = [](const std::string& path) { return refusal([&] { run(path); }); };
   const std::string shear = R"("segments": [{"mode": "d2", "amount": 0.1}]})";

@@ -233,6 +233,52 @@ TEST_F(ReportTest, ShowsTheMemoryOfTheJammingDensity) {
   EXPECT_THAT(html, Not(HasSubstr("NaN")));
 }
 
+/// Rows of a test of two segments, over nu or over shear.
+std::string two_segments(bool shear) {
+  std::string csv = "segment,eps_vol,eps_dev,nu,P,sigma_dev,s_dev,F_v,F_dev,C,C_star,f_NR,phi_J\n";
+  for (int i = 0; i <= 20; ++i) {
+    const double there = i <= 10 ? i / 10.0 : 2 - i / 10.0, nu = shear ? 0.66 : 0.64 + 0.09 * there;
+    csv += std::to_string(i > 10) + ",0," + std::to_string(shear ? 0.28 * there : 0) + "," +
+           std::to_string(nu) + "," + std::to_string(0.02 * there) + ",0.001,0.2,5,0.1,5.5,6.5,0.85,0.66\n";
+  }
+  return csv;
+}
+
+TEST_F(ReportTest, ShowsTheMinimalFormBesideTestsOfMemory) {
+  test::write_synthetic_campaign(dir_);
+  EXPECT_THAT(report_html(dir_), Not(HasSubstr("The minimal form")));
+  for (const char* name : {"oc-s1", "sj-s1"}) {
+    const std::string csv = two_segments(std::string(name) == "sj-s1");
+    std::filesystem::create_directories(dir_ / "records" / name);
+    write_file(dir_ / "records" / name / "record.csv", csv);
+    write_file(dir_ / "predictions" / (std::string(name) + ".minimal.csv"), csv);
+  }
+  edit("predictions.json", [](Json& json) {
+    for (const auto& [test, mode] : {std::pair{"oc-s1", "iso"}, {"sj-s1", "d2"}})
+      json["memory"].push_back({{"test", test},
+                                {"mode", mode},
+                                {"form", "minimal"},
+                                {"file", "predictions/" + std::string(test) + ".minimal.csv"}});
+  });
+  const std::string html = report_html(dir_);
+  EXPECT_THAT(html, HasSubstr("<b>The minimal form</b> (Fig. 5.4 of the thesis"));
+  EXPECT_THAT(html, HasSubstr("First and last cycle of <code>oc-s1</code>"));
+  EXPECT_THAT(html, HasSubstr("Shear at constant volume: <code>sj-s1</code>"));
+}
+
+TEST_F(ReportTest, ShowsTheNumbersNearJamming) {
+  test::write_synthetic_campaign(dir_);
+  EXPECT_THAT(report_html(dir_), Not(HasSubstr("beside Tables 5.1 and 5.2")));
+  edit("parameters.json", [](Json& json) {
+    const Json number{{"value", 8.14}, {"stderr", 0.04}, {"unit", "1"}, {"source", "fit"}, {"thesis", 8.5}};
+    for (const char* row : {"iso", "d2"}) json["near_jamming"][row]["C1"] = number;
+    for (const char* row : {"s_max", "beta_s", "F_max", "beta_F"}) json["near_jamming"][row]["Q_v"] = number;
+  });
+  const std::string html = report_html(dir_);
+  EXPECT_THAT(html, HasSubstr("beside Tables 5.1 and 5.2"));
+  EXPECT_THAT(html, HasSubstr("8.140 ± 0.040"));
+}
+
 TEST_F(ReportTest, MarksFitsThatNoPredictionReads) {
   test::write_synthetic_campaign(dir_);
   EXPECT_THAT(page().text, HasSubstr("UNIfor comparison only"));

@@ -1,0 +1,28 @@
+// The contact law: force, energy and stiffness of one contact from scalars. Another law is another struct
+// with the same members; nothing else in the engine knows the formula. Included into grainlaw::dem for
+// numbers, and by the force loop once per instruction set for vectors of them, one contact to a lane; hence
+// no include guard.
+
+/// Linear visco-elastic contact, Eq. 2.1: f = k delta + gamma d(delta)/dt along the normal while delta >= 0.
+/// The force is repulsive where positive and is not clipped: it may pull shortly before the grains part.
+struct LinearContact {
+  double k = 0;      ///< ug/us^2
+  double gamma = 0;  ///< ug/us, the same for every pair
+
+  /// Force, ug mm/us^2; `overlap` delta >= 0 in mm, `closing` d(delta)/dt in mm/us.
+  template <class T, class U>
+  auto force(T overlap, U closing) const {
+    return k * overlap + gamma * closing;
+  }
+  /// Elastic energy, ug mm^2/us^2.
+  double energy(double overlap) const { return 0.5 * k * overlap * overlap; }
+  /// Whether the force depends on `closing`; where it does not, the loops leave velocities alone.
+  bool damped() const { return gamma != 0; }
+  /// d(force)/d(overlap), ug/us^2.
+  double stiffness(double /*overlap*/) const { return k; }
+
+  static LinearContact of(const Material& material) { return {material.k, material.gamma}; }
+};
+
+/// The law that the engine is built with; all its loops are compiled for this one.
+using ContactLaw = LinearContact;

@@ -1,0 +1,82 @@
+// Cost of a particle-step against the size of the packing: one jammed packing of 1000 grains, laid out 1, 2,
+// 4, ... times along each axis, so that all sizes do the same thing, under D2 flow with list updates. Turns
+// go around the sizes; median of the turns, and the memory that the engine takes. Usage:
+// grainlaw_bench_packing_size [MOST TIMES (10, that is 1e6 grains)] [TURNS (5)] [W (3)] [TIME STEP (over t_c,
+// 0.02)]
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <memory>
+#include <vector>
+
+#include "grainlaw/dem/drive.hpp"
+#include "grainlaw/dem/dynamics.hpp"
+#include "random_packing.hpp"
+
+namespace {
+
+using namespace grainlaw;
+
+/// The packing side by side with itself, `times` along each axis.
+dem::State laid_out(const dem::State& one, int times) {
+  dem::State all;
+  all.box = static_cast<double>(times) * one.box;
+  for (int a = 0; a < times; ++a)
+    for (int b = 0; b < times; ++b)
+      for (int c = 0; c < times; ++c)
+        for (std::size_t i = 0; i < one.count(); ++i) {
+          const auto& x = one.position[i];
+          all.position.push_back(
+              {x[0] + a * one.box(0, 0), x[1] + b * one.box(1, 1), x[2] + c * one.box(2, 2)});
+          all.velocity.push_back(one.velocity[i]);
+          all.radius.push_back(one.radius[i]);
+        }
+  return all;
+}
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Nanoseconds per particle-step.
+double turn(dem::Dynamics& dynamics, double dt) {
+  const std::uint64_t steps = std::max<std::uint64_t>(20, 5'000'000 / dynamics.count());
+  Leg d2{};
+  d2.mode = Mode::d2;
+  d2.duration = dt * static_cast<double>(steps);
+  d2.strain = {-2.839e-5 * d2.duration, 2.839e-5 * d2.duration, 0};
+  d2.profile = Profile::constant;
+  const double begin = processor_seconds();
+  dem::drive(dynamics, d2, dem::plan_steps(d2, d2.duration, steps));
+  return (processor_seconds() - begin) * 1e9 / static_cast<double>(steps * dynamics.count());
+}
+
+}  // namespace
+
+int main(int words, char** word) {
+  const int most = words > 1 ? std::atoi(word[1]) : 10, turns = words > 2 ? std::atoi(word[2]) : 5;
+  Material material;
+  if (words > 3) material.w = std::atof(word[3]);
+  const double fraction = words > 4 ? std::atof(word[4]) : 0.02;
+  const dem::State one = dem::random_packing(material, 1000, 1, 0.75, 1e-6).state();
+  std::vector<std::unique_ptr<dem::Dynamics>> packings;
+  std::vector<double> bytes;
+  for (const int times : {1, 2, 3, 4, 5, 6, 8, 10}) {
+    if (times > most) break;
+    packings.push_back(std::make_unique<dem::Dynamics>(material, laid_out(one, times)));
+  }
+  std::vector<std::vector<double>> cost(packings.size());
+  for (int k = 0; k <= turns; ++k)
+    for (std::size_t p = 0; p < packings.size(); ++p) {
+      dem::Dynamics& dynamics = *packings[p];
+      const double dt = dem::time_step(material, dynamics.grains().smallest_radius(), fraction);
+      const double ns = turn(dynamics, dt);
+      if (k > 0) cost[p].push_back(ns);  // the first one warms up
+    }
+  std::printf("%10s %24s %10s %12s\n", "grains", "ns per particle-step", "over 1000", "contacts/N");
+  for (std::size_t p = 0; p < packings.size(); ++p) {
+    std::sort(cost[p].begin(), cost[p].end());
+    const double median = cost[p][cost[p].size() / 2];
+    std::printf("%10zu %10.2f (%.2f-%.2f) %10.2f %12.3f\n", packings[p]->count(), median, cost[p].front(),
+                cost[p].back(), median / cost[0][cost[0].size() / 2], packings[p]->measure().C / 2);
+  }
+}
