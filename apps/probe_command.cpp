@@ -2,6 +2,7 @@
 // applied.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -65,7 +66,10 @@ Plan plan_of(const Arguments& arguments) {
   if (plan.undo && arguments.amplitudes.empty())
     throw Error("", "--undo", "must come with a strain to undo: --amplitude");
   for (const std::string& text : arguments.amplitudes) {
-    plan.amplitudes.push_back(read_number("--amplitude", text, between(1e-9, 0.1)));
+    const double amplitude = read_number("--amplitude", text, between(1e-9, 0.1));
+    if (std::ranges::find(plan.amplitudes, amplitude) != plan.amplitudes.end())
+      throw Error("", "--amplitude", "must be given once for each strain; got " + text + " again");
+    plan.amplitudes.push_back(amplitude);
     if (plan.amplitudes.back() < (1 - rounding) * least_over_residual * plan.residual)
       throw Error(
           "", "--amplitude",

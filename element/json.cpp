@@ -10,6 +10,8 @@
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/words.hpp"
 
+template class nlohmann::basic_json<nlohmann::ordered_map>;
+
 namespace grainlaw {
 
 namespace {

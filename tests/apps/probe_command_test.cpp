@@ -132,6 +132,8 @@ TEST_F(ProbeCommand, BadInput) {
   EXPECT_TRUE(refused({"-o", "m.csv", "--undo"}, {"--undo: must come with a strain to undo"}));
   EXPECT_TRUE(
       refused({"-o", "m.csv", "--amplitude", "0"}, {"--amplitude: must be a number >= 1e-09", "got 0"}));
+  EXPECT_TRUE(refused({"-o", "m.csv", "--amplitude", "1e-6", "--amplitude", "0.000001"},
+                      {"--amplitude: must be given once for each strain; got 0.000001 again"}));
   EXPECT_TRUE(refused({"-o", "m.csv", "--residual", "1e-8", "--amplitude", "1e-6"},
                       {"--amplitude: must be at least 1000 times the residual, which is 1e-08; got 1e-6"}));
   EXPECT_TRUE(refused({"-o", "m.csv", "--residual", "1e-3"},

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <iterator>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "grainlaw/calibrate/moduli_selection.hpp"
@@ -180,61 +179,6 @@ TEST(Moduli, RatioOfA2ToA1RisesWithDensity) {
     before = slopes.A2 / slopes.A1;
   }
   EXPECT_NEAR(before, 2.15, 0.01);
-}
-
-/// Sums over the states of tables with begin < eps_dev < end.
-struct InitialShear {
-  double ratio = 0;  ///< of G_oct/B to the thesis's Eq. 4.14, mean
-  double G = 0, G_of_invariants = 0;
-};
-
-InitialShear initial_shear(const std::vector<std::filesystem::path>& tables, double begin, double end) {
-  InitialShear sum;
-  double n = 0;
-  for (const auto& table : tables) {
-    const Record r = read_moduli(table);
-    for (std::size_t k = 0; k < r.rows(); ++k) {
-      if (r["amplitude"][k] != 0 || r["eps_dev"][k] < begin || r["eps_dev"][k] > end) continue;
-      sum.ratio += r["G_oct"][k] / r["B"][k] / (0.51 * (1 - std::exp(-(r["F_v"][k] - 4.2) / 1.9)));
-      sum.G += r["G_oct"][k];
-      if (r.has("G_oct_inv")) sum.G_of_invariants += r["G_oct_inv"][k];
-      n += 1;
-    }
-  }
-  sum.ratio /= n;
-  return sum;
-}
-
-/// Over three packings.
-std::pair<double, double> mean_and_error(const std::array<double, 3>& values) {
-  const double mean = (values[0] + values[1] + values[2]) / 3;
-  double squares = 0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return {mean, std::sqrt(squares / 6)};
-}
-
-/// docs/moduli.md, "Why the thesis's G is smaller": states at eps_dev about 0.008, and sqrt(3 J2) of the
-/// whole stress in place of what lies along the axis of shear, give Eq. 4.14 as the thesis has it.
-TEST(Moduli, InitialShearOfShearedStatesByInvariantsIsTheThesis) {
-  std::array<std::vector<std::filesystem::path>, 3> packings;
-  for (const char* nu : densities) {
-    for (int seed = 1; seed <= 2; ++seed)
-      packings[static_cast<std::size_t>(seed - 1)].push_back(table_of(nu, seed));
-    packings[2].push_back(std::string(GRAINLAW_DATA_DIR "/moduli/start-") + nu + "-s3.csv");
-  }
-  const InitialShear both = initial_shear(packings[2], 0.0055, 0.0125);
-  const double by_invariants = both.G_of_invariants / both.G;
-  EXPECT_NEAR(by_invariants, 0.966, 5e-3);
-  std::array<double, 3> isotropic{}, sheared{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    isotropic[k] = initial_shear(packings[k], 0, 0.0045).ratio;
-    sheared[k] = initial_shear(packings[k], 0.0055, 0.0125).ratio * by_invariants;
-  }
-  const auto [early, error_early] = mean_and_error(isotropic);
-  const auto [late, error_late] = mean_and_error(sheared);
-  EXPECT_GT(early, 1 + 4 * error_early);
-  EXPECT_LT(error_late, 0.025);  // docs/moduli.md: 0.990 +- 0.020
-  EXPECT_NEAR(late, 1, error_late);
 }
 
 /// docs/moduli.md: whether a state is minimised or left to the dynamics decides about single states, not
