@@ -11,6 +11,8 @@ namespace grainlaw::model {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+/// Over k*. A packing in balance has it 4e-5 above phi_J: what is below could not be told from phi_J = nu.
+constexpr double least_pressure = 1e-5;
 
 /// What a row has measured; NaN where it has not.
 struct State {
@@ -24,8 +26,8 @@ Estimates estimates_of(const PackingLaw& law, const State& s) {
   const PressureCurve pressure = law.pressure();
   const ContactCurve contacts = law.contacts();
   // Grains that touch in passing press a little, too: with fewer contacts than balance needs nothing is
-  // jammed.
-  const bool presses = s.P > 0 && !(s.C_star < contacts.C0);
+  // jammed; where contacts are not measured, nothing that presses so little.
+  const bool presses = std::isnan(s.C_star) ? s.P >= least_pressure : s.P > 0 && !(s.C_star < contacts.C0);
   return {presses ? jamming_density_from_pressure_and_contacts(pressure, s.nu, s.P, s.C).value_or(nan) : nan,
           presses ? jamming_density_from_pressure(pressure, s.nu, s.P).value_or(nan) : nan,
           jamming_density_from_contacts(contacts, s.nu, s.C_star).value_or(nan),

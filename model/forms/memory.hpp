@@ -31,6 +31,8 @@ namespace grainlaw::model {
 
 /// History after an isotropic or other change of volume from h.nu to nu: compression beyond phi_max is a
 /// first one (M = 1 in Eq. 5.1); below it, from phi_H on, it is part of one more cycle, M growing with ln nu.
+/// A packing that jams later than M = 1 has it, as one that starts from a measured pressure may, stays as far
+/// below.
 template <class P, class T>
 BasicHistory<T> compressed(const BasicOverCompression<P>& o, BasicHistory<T> h, const T& nu) {
   using std::exp, std::log, std::pow;
@@ -48,9 +50,12 @@ BasicHistory<T> compressed(const BasicOverCompression<P>& o, BasicHistory<T> h, 
     }
   }
   if (h.phi_max < nu) {
+    const T before = jamming_density_after(o, h.phi_max, 1.0), first = jamming_density_after(o, nu, 1.0);
     h.phi_max = nu;
-    const T first = jamming_density_after(o, nu, 1.0);
-    if (h.phi_H < first) h.phi_H = first;
+    if (h.phi_H < before)
+      h.phi_H = h.phi_H + (first - before);
+    else if (h.phi_H < first)
+      h.phi_H = first;
   }
   return h;
 }

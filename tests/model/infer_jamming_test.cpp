@@ -110,7 +110,9 @@ TEST(InferJamming, PressureOfTooFewContactsSaysNothing) {
 TEST(InferJamming, PressureAloneIsEnough) {
   Record record({"nu", "P"});
   record.append({0.7, 0.02});
+  record.append({0.663, 1e-9});  // grains in passing: nothing tells them from phi_J = nu
   const Record out = infer_jamming_density(record, table_5_1());
+  EXPECT_TRUE(std::isnan(out["phi_J_pressure_alone"][1]));
   EXPECT_TRUE(std::isnan(out["phi_J"][0]));
   EXPECT_NEAR(out["phi_J_pressure_alone"][0],
               *jamming_density_from_pressure(table_5_1().pressure(), 0.7, 0.02), 0);

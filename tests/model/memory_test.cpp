@@ -72,6 +72,21 @@ TEST(Memory, BeyondTheLargestDensityACycleIsAFirstOneAgain) {
   EXPECT_EQ(history.phi_H, jamming_density_after(over, 0.82, 1.0));
 }
 
+/// As one does that starts from a measured pressure: the least compression must not bring it to the mean
+/// packing.
+TEST(Memory, APackingThatJamsEarlierThanTheMeanOneGoesOnFromThere) {
+  const auto& over = form().laws.memory.over;
+  const double below = 0.002, mean = jamming_density_after(over, 0.70, 1.0);
+  const History start{mean - below, 0.70, 0.70};
+  const History least = compressed<double, double>(over, start, 0.70 * (1 + 1e-9));
+  EXPECT_NEAR(least.phi_H, start.phi_H, 1e-9);
+  const History once = compressed<double, double>(over, start, 0.82);
+  EXPECT_NEAR(once.phi_H, jamming_density_after(over, 0.82, 1.0) - below, 1e-15);
+  History pieces = start;
+  for (int i = 1; i <= 12; ++i) pieces = compressed<double, double>(over, pieces, 0.70 + 0.01 * i);
+  EXPECT_NEAR(pieces.phi_H, once.phi_H, 1e-14);
+}
+
 TEST(Memory, CompressionBelowTheShearJammingDensityLeavesNone) {
   const auto& over = form().laws.memory.over;
   History history{over.phi_SJ, 0.64, 0.64};
