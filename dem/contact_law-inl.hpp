@@ -1,7 +1,8 @@
 // The contact law: force, energy and stiffness of one contact from scalars. Another law is another struct
-// with the same members; nothing else in the engine knows the formula. Included into grainlaw::dem for
-// numbers, and by the force loop once per instruction set for vectors of them, one contact to a lane; hence
-// no include guard.
+// with the same members; nothing else in the engine knows the formula. Its force is a template, of what
+// numbers and vectors have alike: sums, differences, products, quotients and root(). Where the overlap is
+// negative it may be anything, and is not taken. Included into grainlaw::dem for numbers, and by the force
+// loop once per instruction set for vectors of them, one contact to a lane; hence no include guard.
 
 /// Linear visco-elastic contact, Eq. 2.1: f = k delta + gamma d(delta)/dt along the normal while delta >= 0.
 /// The force is repulsive where positive and is not clipped: it may pull shortly before the grains part.

@@ -80,7 +80,7 @@ class Trial {
     cost_.step = seconds_of([&] { step(); }, trial_seconds, fewest_steps) / grains_;
     Grains copy = dynamics_.grains();
     const Pairs& pairs = dynamics_.neighbours().pairs();
-    cost_.force = seconds_of([&] { contact_forces(dynamics_.law(), pairs, dynamics_.cell(), copy); },
+    cost_.force = seconds_of([&] { add_contact_forces(dynamics_.law(), pairs, dynamics_.cell(), copy); },
                              trial_seconds / 10, 5) /
                   grains_;
     cost_.pairs = static_cast<double>(pairs.count()) / grains_;

@@ -55,7 +55,7 @@ class Dynamics {
   /// The same with any G, 1/us.
   void start_flow(double dt, const Mat3& gradient);
   /// One step to an orthorhombic box of edges `length` (mm), which then deforms at `rate` (1/us). Throws
-  /// Error if the motion is no longer finite.
+  /// Error if the motion is no longer finite, or as Neighbours::update does; there is no going on from it.
   void step(const Vec3& length, const Vec3& rate) { step(Mat3::diagonal(length), Mat3::diagonal(rate)); }
   /// One step to a box of edges H (mm), which then deforms with G (1/us): H = F H_before, never flipped.
   void step(const Mat3& edges, const Mat3& gradient);
@@ -94,7 +94,7 @@ class Dynamics {
   void assemble(int threads);
   void update_list(double lookahead);
   void deal_out();
-  /// From forces that are zero.
+  /// One thread adds to forces, which must be zero.
   void compute_forces();
 
   Material material_;

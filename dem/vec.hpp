@@ -30,6 +30,8 @@ struct CacheLineAllocator {
 };
 using Quads = std::vector<Quad, CacheLineAllocator<Quad>>;
 
+/// As vectors of numbers have it, for a contact law.
+inline double root(double a) { return std::sqrt(a); }
 inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
 

@@ -61,15 +61,21 @@ Mean mean_over_packings(const OfSeed& of_seed) {
 }
 
 constexpr double isotropic_to = 0.0045;                       // eps_dev
-constexpr double sheared_from = 0.0055, sheared_to = 0.0125;  // "nearly isotropic" states, as in the thesis
+constexpr double ruled_to = 0.0085;                           // the thesis's rule: eps_dev <= 0.008
+constexpr double sheared_from = 0.0055, sheared_to = 0.0125;  // "nearly isotropic" states
 
-/// docs/moduli.md, "Why the thesis's G is smaller": our definition, in states as the thesis takes them.
-TEST(InitialShear, AlongTheAxisIsTheThesisInItsStates) {
+/// docs/moduli.md, "Why the thesis's G is smaller": our definition lies above, by the thesis's own rule for
+/// states, too.
+TEST(InitialShear, AlongTheAxisLiesAboveTheThesisByItsRule) {
   const Mean isotropic =
       mean_over_packings([](int seed) { return initial_shear(seed, 0, isotropic_to).ratio; });
   EXPECT_NEAR(isotropic.value, 1.060, 5e-4);
   EXPECT_NEAR(isotropic.error, 0.008, 5e-4);
   EXPECT_GT(isotropic.off(1), 4);
+  const Mean ruled = mean_over_packings([](int seed) { return initial_shear(seed, 0, ruled_to).ratio; });
+  EXPECT_NEAR(ruled.value, 1.046, 5e-4);
+  EXPECT_NEAR(ruled.error, 0.014, 5e-4);
+  EXPECT_GT(ruled.off(1), 3);
   const Mean sheared =
       mean_over_packings([](int seed) { return initial_shear(seed, sheared_from, sheared_to).ratio; });
   EXPECT_NEAR(sheared.value, 1.029, 5e-4);
@@ -142,7 +148,8 @@ double slope_of_shear(int seed, const char* column, double factor) {
   return products / squares;
 }
 
-/// Table 4.1: g_I = 86 +- 3. Along the axis ours agrees, by sqrt(3 J2) it has but half of that.
+/// Table 4.1: g_I = 86 +- 3. Along the axis ours differs by less than its scatter where (G/B)_ini is that of
+/// these states, not by the rule of the thesis; by sqrt(3 J2) it is but half of that.
 TEST(InitialShear, DecreaseOfShearModulusIsTheThesisAlongTheAxisButNotByInvariants) {
   const Mean factor = mean_over_packings(lessened_by_invariants_in_shear);
   EXPECT_NEAR(factor.value, 0.9975, 5e-4);

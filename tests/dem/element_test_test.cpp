@@ -122,8 +122,8 @@ TEST_F(ElementTest, RecordOfAllModes) {
 
 TEST_F(ElementTest, D2CompressesYAndExtendsX) {
   // A packing of 100 grains is anisotropic by chance by as much as this strain makes it: over 24 seeds s_dev
-  // ends at 0.17, standard deviation 0.05 to 0.11. So the mean over eight of them is tested, four of its own
-  // away from 0.
+  // ends at 0.17, standard deviation 0.05 to 0.11. So the mean over eight of them is tested, three of its own
+  // away from 0.05.
   double yy_over_xx = 0, s_dev = 0;
   for (int seed = 1; seed <= 8; ++seed) {
     const Scene scene = scene_of(R"({"preparation": {"count": 100, "seed": )" + std::to_string(seed) +

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "grainlaw/dem/advance.hpp"
 #include "grainlaw/dem/forces.hpp"
@@ -139,6 +140,7 @@ void expect_one_step_of_verlet(const Mat3& gradient, const Mat3& deformation) {
     const Vec3 last = three(before.acceleration[i]), v = three(before.half[i]), x = three(before.place[i]);
     const Vec3 is_x = three(heap.grains.place[i]), is_v = three(heap.grains.half[i]);
     const Vec3 is_seen = three(heap.grains.motion[i]), is_a = three(heap.grains.acceleration[i]);
+    EXPECT_EQ(norm(three(heap.grains.force[i])), 0);
     double strayed = 0;
     const Vec3 carried = deformation * x, flown = root * is_v;
     const Vec3 left = list.deformation * three(list.reference[i]);
@@ -156,6 +158,18 @@ void expect_one_step_of_verlet(const Mat3& gradient, const Mat3& deformation) {
     EXPECT_EQ(heap.grains.motion[i].w, 0);
   }
   EXPECT_NEAR(excess, expected_excess, 1e-13);
+}
+
+// Vectors hold two grains, and an odd last one is alone.
+TEST(MotionKernel, TellsAPlaceThatIsNoNumberWhicheverGrainsItIs) {
+  for (const std::size_t last : {61u, 62u})
+    for (std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{30}, last - 2, last - 1}) {
+      Heap heap(along_axes);
+      const ListReach list = heap.neighbours.reach(heap.cell);
+      heap.grains.half[i].y = std::numeric_limits<double>::quiet_NaN();
+      const Stride stride{1e-3, Mat3::diagonal({1, 1, 1}), along_axes, 100, false};
+      EXPECT_TRUE(std::isnan(advance(stride, list, 0, last, heap.grains))) << i << " of " << last;
+    }
 }
 
 TEST_P(EachTarget, AdvanceIsOneStepOfVerlet) {
