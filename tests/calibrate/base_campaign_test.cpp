@@ -10,6 +10,7 @@
 #include "grainlaw/dem/scene.hpp"
 #include "grainlaw/element/record.hpp"
 #include "grainlaw/model/predict.hpp"
+#include "same_parameters.hpp"
 
 namespace grainlaw::calibrate {
 namespace {
@@ -22,17 +23,8 @@ const FitOutput& fitted() {
 
 /// data/grains/w-3.json is what the fits of these records write.
 TEST(BaseCampaign, TheSetInTheTreeIsTheirs) {
-  const auto shipped = model::ParameterSet::load(GRAINLAW_DATA_DIR "/grains/w-3.json");
-  const auto ours = fitted().parameters.named(), theirs = shipped.named();
-  ASSERT_EQ(ours.size(), theirs.size());
-  for (std::size_t i = 0; i < ours.size(); ++i) {
-    EXPECT_EQ(ours[i].name, theirs[i].name);
-    EXPECT_EQ(ours[i].parameter->source, theirs[i].parameter->source) << ours[i].name;
-    // A minimum is found to the square root of rounding.
-    EXPECT_NEAR(ours[i].parameter->value, theirs[i].parameter->value,
-                1e-5 * (1e-3 + std::abs(theirs[i].parameter->value)))
-        << ours[i].name;
-  }
+  test::expect_same_parameters(fitted().parameters,
+                               model::ParameterSet::load(GRAINLAW_DATA_DIR "/grains/w-3.json"));
 }
 
 TEST(BaseCampaign, EveryCheckHolds) {

@@ -8,6 +8,7 @@
 #include "grainlaw/calibrate/fit_records.hpp"
 #include "grainlaw/calibrate/predict_records.hpp"
 #include "grainlaw/model/laws/jamming_density.hpp"
+#include "same_parameters.hpp"
 
 namespace grainlaw::calibrate {
 namespace {
@@ -28,17 +29,7 @@ model::ParameterSet shipped() { return model::ParameterSet::load(data_dir / "gra
 
 /// data/grains/w-3-memory.json is what `fit data/records/base --memory data/memory` writes.
 TEST(NearJammingRecords, TheSetInTheTreeIsTheirs) {
-  const model::ParameterSet set = shipped();
-  const auto ours = fitted().parameters.named(), theirs = set.named();
-  ASSERT_EQ(ours.size(), theirs.size());
-  for (std::size_t i = 0; i < ours.size(); ++i) {
-    EXPECT_EQ(ours[i].name, theirs[i].name);
-    EXPECT_EQ(ours[i].parameter->source, theirs[i].parameter->source) << ours[i].name;
-    // A minimum is found to the square root of rounding.
-    EXPECT_NEAR(ours[i].parameter->value, theirs[i].parameter->value,
-                1e-5 * (1e-3 + std::abs(theirs[i].parameter->value)))
-        << ours[i].name;
-  }
+  test::expect_same_parameters(fitted().parameters, shipped());
 }
 
 /// Of the groups that the minimal form takes nothing comes from the thesis, and what is assumed are limits.
