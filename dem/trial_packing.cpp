@@ -19,29 +19,28 @@ constexpr double trial_step = 0.1;  // over t_c, while trial packings are made
 constexpr std::size_t whole_trial = 5000, base_grains = 4000;
 constexpr std::size_t largest_trial = 200'000;  // beyond, a grain costs the same
 
-/// A packing beside itself, `times` along each axis.
-State tiled(const State& base, std::size_t times) {
-  State state = base;
+}  // namespace
+
+State laid_out(const State& one, std::size_t times) {
+  State state = one;
   state.position.clear();
   state.velocity.clear();
   state.radius.clear();
-  state.box = static_cast<double>(times) * base.box;
-  const Vec3 edge = base.box.diagonal();
+  state.box = static_cast<double>(times) * one.box;
+  const Vec3 edge = one.box.diagonal();
   for (std::size_t a = 0; a < times; ++a)
     for (std::size_t b = 0; b < times; ++b)
       for (std::size_t c = 0; c < times; ++c)
-        for (std::size_t i = 0; i < base.count(); ++i) {
-          const Vec3& x = base.position[i];
+        for (std::size_t i = 0; i < one.count(); ++i) {
+          const Vec3& x = one.position[i];
           state.position.push_back({x[0] + static_cast<double>(a) * edge[0],
                                     x[1] + static_cast<double>(b) * edge[1],
                                     x[2] + static_cast<double>(c) * edge[2]});
-          state.velocity.push_back(base.velocity[i]);
-          state.radius.push_back(base.radius[i]);
+          state.velocity.push_back(one.velocity[i]);
+          state.radius.push_back(one.radius[i]);
         }
   return state;
 }
-
-}  // namespace
 
 TrialPacking::TrialPacking(const Material& material, std::size_t count, const NewPacking& like)
     : material_(material) {
@@ -62,7 +61,7 @@ void TrialPacking::compress_to(double nu) {
 
 void TrialPacking::shear() { go(Mode::d2, {-0.01, 0.01, 0}, 6e-6); }
 
-State TrialPacking::state() const { return times_ > 1 ? tiled(state_, times_) : state_; }
+State TrialPacking::state() const { return times_ > 1 ? laid_out(state_, times_) : state_; }
 
 void TrialPacking::go(Mode mode, const StrainTensor& strain, double strain_per_step) {
   Leg leg{};

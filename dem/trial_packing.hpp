@@ -9,6 +9,9 @@
 
 namespace grainlaw::dem {
 
+/// A packing in an orthorhombic box beside itself, `times` along each axis.
+State laid_out(const State& one, std::size_t times);
+
 /// A packing like the scene's, made much faster than a real one: only what its neighbourhoods cost matters.
 class TrialPacking {
  public:

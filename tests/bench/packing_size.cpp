@@ -12,28 +12,12 @@
 
 #include "grainlaw/dem/drive.hpp"
 #include "grainlaw/dem/dynamics.hpp"
+#include "grainlaw/dem/trial_packing.hpp"
 #include "random_packing.hpp"
 
 namespace {
 
 using namespace grainlaw;
-
-/// The packing side by side with itself, `times` along each axis.
-dem::State laid_out(const dem::State& one, int times) {
-  dem::State all;
-  all.box = static_cast<double>(times) * one.box;
-  for (int a = 0; a < times; ++a)
-    for (int b = 0; b < times; ++b)
-      for (int c = 0; c < times; ++c)
-        for (std::size_t i = 0; i < one.count(); ++i) {
-          const auto& x = one.position[i];
-          all.position.push_back(
-              {x[0] + a * one.box(0, 0), x[1] + b * one.box(1, 1), x[2] + c * one.box(2, 2)});
-          all.velocity.push_back(one.velocity[i]);
-          all.radius.push_back(one.radius[i]);
-        }
-  return all;
-}
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
@@ -53,16 +37,17 @@ double turn(dem::Dynamics& dynamics, double dt) {
 }  // namespace
 
 int main(int words, char** word) {
-  const int most = words > 1 ? std::atoi(word[1]) : 10, turns = words > 2 ? std::atoi(word[2]) : 5;
+  const std::size_t most = words > 1 ? std::strtoull(word[1], nullptr, 10) : 10;
+  const int turns = words > 2 ? std::atoi(word[2]) : 5;
   Material material;
   if (words > 3) material.w = std::atof(word[3]);
   const double fraction = words > 4 ? std::atof(word[4]) : 0.02;
   const dem::State one = dem::random_packing(material, 1000, 1, 0.75, 1e-6).state();
   std::vector<std::unique_ptr<dem::Dynamics>> packings;
   std::vector<double> bytes;
-  for (const int times : {1, 2, 3, 4, 5, 6, 8, 10}) {
+  for (const std::size_t times : {1, 2, 3, 4, 5, 6, 8, 10}) {
     if (times > most) break;
-    packings.push_back(std::make_unique<dem::Dynamics>(material, laid_out(one, times)));
+    packings.push_back(std::make_unique<dem::Dynamics>(material, dem::laid_out(one, times)));
   }
   std::vector<std::vector<double>> cost(packings.size());
   for (int k = 0; k <= turns; ++k)
