@@ -69,8 +69,14 @@ void add_memory_rows(const model::ParameterSet& set, const Add& add) {
   add("memory.eps0", m.eps0);
   add("memory.eps0_R", m.eps0_R);
   if (m.phi_cr) add("memory.phi_cr", *m.phi_cr);
-  if (m.eps_c) add("memory.eps_c", *m.eps_c);
-  if (m.hold) add("memory.hold", *m.hold);
+  for (const auto& [name, parameter] : {std::pair{"memory.alpha_P", &m.alpha_P},
+                                        {"memory.eps0_P", &m.eps0_P},
+                                        {"memory.eps0_R_P", &m.eps0_R_P},
+                                        {"memory.eps_r", &m.eps_r},
+                                        {"memory.hold", &m.hold},
+                                        {"memory.pack_rate", &m.pack_rate},
+                                        {"memory.phi_pack", &m.phi_pack}})
+    if (*parameter) add(name, **parameter);
 }
 
 /// The fitted parameters with their names, in the order they are shown.

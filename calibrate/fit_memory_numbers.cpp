@@ -1,6 +1,7 @@
 #include "grainlaw/calibrate/fit_memory_numbers.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,27 @@ namespace grainlaw::calibrate {
 
 namespace {
 
-/// Of first loadings at nu = 0.67 to 0.81, and of D2 cycles to 0.4 at 0.685 to 0.75 (docs/model.md, Memory).
-constexpr double usual_eps_c = 0.042, usual_hold = 0.4;
+/// What the form has besides Eqs. 5.1 and 5.5: a number, what it is where nothing tells (that of w = 3, N =
+/// 9261: docs/model.md, Memory), and what tells it.
+struct Number {
+  const char* name;
+  std::optional<model::Parameter> model::MemoryLaws::*member;
+  double usual;
+  enum { loading, reversal, nothing } told_by;
+};
+constexpr Number numbers[] = {{"memory.alpha_P", &model::MemoryLaws::alpha_P, 1.7, Number::loading},
+                              {"memory.eps0_P", &model::MemoryLaws::eps0_P, 0.0785, Number::loading},
+                              {"memory.eps0_R_P", &model::MemoryLaws::eps0_R_P, 0.17, Number::reversal},
+                              {"memory.eps_r", &model::MemoryLaws::eps_r, 0.2, Number::reversal},
+                              {"memory.hold", &model::MemoryLaws::hold, 0.3, Number::reversal},
+                              {"memory.pack_rate", &model::MemoryLaws::pack_rate, 2, Number::nothing},
+                              {"memory.phi_pack", &model::MemoryLaws::phi_pack, 0.667, Number::nothing}};
 
 model::Parameter assumed(double value, const std::string& why) {
   model::Parameter parameter;
   parameter.value = value;
   parameter.source = "assumed";
-  parameter.note = why + "; that of data/records/base, w = 3";
+  parameter.note = why + "; that of w = 3 (docs/model.md, Memory)";
   return parameter;
 }
 
@@ -46,22 +60,29 @@ void add_memory_numbers(const std::filesystem::path& dir, const RecordFolder& fo
   PolishOptions options;
   options.selection.modes = {"d2"};
   options.form.form = model::Form::memory;
-  options.names = {"memory.eps_c"};
   options.trade_off = options.profiles = options.held_out = false;
   const bool any_reverses = std::any_of(folder.tests.begin(), folder.tests.end(), [](const TestRecord& test) {
     return test.role == Role::fit && test.mode == "d2" && reverses(test);
   });
-  if (any_reverses) options.names.push_back("memory.hold");
   auto& memory = *parameters.memory;
-  memory.eps_c = assumed(usual_eps_c, "no D2 test tells");
-  memory.hold = assumed(usual_hold, any_reverses ? "the D2 tests do not tell" : "no D2 test is reversed");
+  for (const Number& number : numbers) {
+    const bool asked =
+        number.told_by == Number::loading || (number.told_by == Number::reversal && any_reverses);
+    if (asked) options.names.emplace_back(number.name);
+    memory.*number.member =
+        assumed(number.usual, asked                                ? "the D2 tests do not tell"
+                              : number.told_by == Number::reversal ? "no D2 test is reversed"
+                                                                   : "no test is asked for it");
+  }
   try {
     const PolishOutput fitted = polish(dir, parameters, options);
-    const auto& told = *fitted.parameters.memory;
-    if (is_told(fitted.account, "memory.eps_c")) memory.eps_c = told.eps_c;
-    if (is_told(fitted.account, "memory.hold")) memory.hold = told.hold;
+    for (const Number& number : numbers)
+      if (is_told(fitted.account, number.name))
+        memory.*number.member = (*fitted.parameters.memory).*number.member;
   } catch (const Error& error) {  // no D2 test that could be followed: the other fits stand
-    memory.eps_c = assumed(usual_eps_c, std::string("no D2 test tells (") + error.what() + ")");
+    for (const Number& number : numbers)
+      if (number.told_by == Number::loading)
+        memory.*number.member = assumed(number.usual, std::string("no D2 test tells (") + error.what() + ")");
   }
 }
 

@@ -1,5 +1,5 @@
-// The numbers of the form with memory: eps_c, the strain by which the memory of shear is later than the
-// fabric, from whole D2 tests; hold, by which it slows the fabric, from those of them that are reversed.
+// The numbers of the form with memory: exponent and strain of Eq. 5.3 from whole D2 tests; what a reversal
+// does (eps0_R, eps_r, hold) from those of them that are reversed.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace grainlaw::calibrate {
 
-/// Gives group memory of `parameters` eps_c and hold, where it has what that form needs: fitted to the tests
+/// Gives group memory of `parameters` what that form needs, where it can be taken at all: fitted to the tests
 /// of role fit in `dir`, and assumed (with a note that says why) where these do not tell.
 void add_memory_numbers(const std::filesystem::path& dir, const RecordFolder& folder,
                         model::ParameterSet& parameters);

@@ -224,7 +224,8 @@ std::optional<MemoryLaws> Reference::memory() const {
   MemoryLaws memory = *set_->memory;
   if (!same_material_) {
     mark_as_other_material(memory, memory_keys, whose());
-    for (auto* option : {&memory.phi_cr, &memory.eps_c, &memory.hold})
+    for (auto* option : {&memory.phi_cr, &memory.alpha_P, &memory.eps0_P, &memory.eps0_R_P, &memory.eps_r,
+                         &memory.hold, &memory.pack_rate, &memory.phi_pack})
       if (*option) (*option)->source = "assumed";
   }
   return memory;

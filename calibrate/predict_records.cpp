@@ -32,7 +32,7 @@ std::vector<model::Choice> choices_for(const TestRecord& test, const model::Para
   if (terms != model::Terms{}) choices.push_back({model::Form::coupled, terms});
   terms.energy = false;
   const auto& memory = parameters.memory;
-  if (memory && memory->eps_c) choices.push_back({model::Form::memory, terms});
+  if (memory && memory->eps_r) choices.push_back({model::Form::memory, terms});
   return choices;
 }
 

@@ -131,11 +131,26 @@ void add_memory(BasicLaws<P>& laws, const ParameterSet& parameters, const std::s
   laws.shear_pressure = pressure_of(parameters.packing(parameters.closure.contacts, who), read);
   const MemoryLaws& memory = parameters.need_memory(who);
   laws.memory.over = over_compression_of(memory, read);
-  if (!memory.eps_c)
-    throw Error(parameters.file, "memory.eps_c",
+  if (!memory.eps_r)
+    throw Error(parameters.file, "memory.eps_r",
                 "is missing; " + who + " needs it (fit and calibrate write it)");
-  laws.memory.eps_c = read(*memory.eps_c);
-  if (memory.hold) laws.memory.hold = read(*memory.hold);
+  BasicMemoryNumbers<P>& numbers = laws.memory;
+  // By reference: who reads knows a parameter by where it stands.
+  const auto either = [&](const std::optional<Parameter>& own, const Parameter& other) {
+    return read(own ? *own : other);
+  };
+  numbers.alpha = either(memory.alpha_P, memory.alpha);
+  numbers.eps0 = either(memory.eps0_P, memory.eps0);
+  numbers.eps0_R = either(memory.eps0_R_P, memory.eps0_R);
+  numbers.eps_r = read(*memory.eps_r);
+  if (memory.hold) numbers.hold = read(*memory.hold);
+  if (memory.pack_rate.has_value() != memory.phi_pack.has_value())
+    throw Error(parameters.file, memory.pack_rate ? "memory.phi_pack" : "memory.pack_rate",
+                "is missing; memory.pack_rate and memory.phi_pack go together");
+  if (memory.pack_rate) {
+    numbers.pack_rate = read(*memory.pack_rate);
+    numbers.phi_pack = read(*memory.phi_pack);
+  }
 }
 
 /// Fills in what the terms need.

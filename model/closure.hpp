@@ -47,8 +47,13 @@ Choice choice_of(const std::string& name);
 template <class P>
 struct BasicMemoryNumbers {
   BasicOverCompression<P> over;  ///< Eqs. 5.1, 5.5
-  P eps_c = 1;                   ///< strain by which the memory of shear is later than the fabric
-  P hold = 0;                    ///< part of the fabric's rate that steady shear takes
+  P alpha = 1;                   ///< exponent of Eq. 5.3
+  P eps0 = 1;                    ///< strain over which a first loading is remembered (Eq. 5.3)
+  P eps0_R = 1;                  ///< the same after a reversal (Eq. 5.13)
+  P eps_r = 1;                   ///< strain over which a reversal empties the memory of the direction before
+  P hold = 0;                    ///< part of the fabric's rate that a full reversal takes
+  P pack_rate = 0;               ///< of shear to and fro
+  P phi_pack = 0;                ///< the density it packs to
 };
 
 /// The laws of one form, as numbers.

@@ -146,8 +146,13 @@ struct MemoryOption {
   Range range;
 };
 const MemoryOption memory_options[] = {{"phi_cr", &MemoryLaws::phi_cr, inside(0, 1)},
-                                       {"eps_c", &MemoryLaws::eps_c, above(0)},
-                                       {"hold", &MemoryLaws::hold, share()}};
+                                       {"alpha_P", &MemoryLaws::alpha_P, above(0)},
+                                       {"eps0_P", &MemoryLaws::eps0_P, above(0)},
+                                       {"eps0_R_P", &MemoryLaws::eps0_R_P, above(0)},
+                                       {"eps_r", &MemoryLaws::eps_r, above(0)},
+                                       {"hold", &MemoryLaws::hold, share()},
+                                       {"pack_rate", &MemoryLaws::pack_rate, at_least(0)},
+                                       {"phi_pack", &MemoryLaws::phi_pack, inside(0, 1)}};
 
 /// near_jamming.ROW: name and where it is kept.
 constexpr std::array<std::pair<const char*, PackingLaw NearJammingLaws::*>, 2> near_modes{

@@ -78,8 +78,10 @@ struct VolumetricLaws {
 /// memory: Eqs. 5.1 to 5.13.
 struct MemoryLaws {
   Parameter phi_SJ, mu, beta, alpha_max, alpha_phi, alpha, eps0, eps0_R;
-  std::optional<Parameter> phi_cr;       ///< the thesis gives no number
-  std::optional<Parameter> eps_c, hold;  ///< of the form with memory, which is not the thesis's
+  std::optional<Parameter> phi_cr;  ///< the thesis gives no number
+  /// Of the form with memory: alpha, eps0 and eps0_R as the pressure of jammed packings has them (without,
+  /// those above), and what is not the thesis's.
+  std::optional<Parameter> alpha_P, eps0_P, eps0_R_P, eps_r, hold, pack_rate, phi_pack;
   OverCompression over_compression() const;
 };
 

@@ -212,6 +212,7 @@ void Filling<T>::fill_history() {
          "the compression that leaves phi_J, by Eqs. 5.1 and 5.5 with M = 1, at least nu");
   }
   state.history = {state.phi_J, phi_max, state.nu};
+  state.shear.steady = std::get<BasicMemory<T>>(result_.law).steady_density(state.nu);
 }
 
 /// Jammed or not; an unjammed point carries nothing.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "grainlaw/model/laws/shear_memory.hpp"
 #include "grainlaw/model/walk/dual.hpp"
 
 namespace grainlaw::model {
@@ -74,8 +75,8 @@ struct BasicState {
   T phi_J = 0;          ///< jamming density: at and below it the point is unjammed
   bool jammed = false;  ///< unjammed: P = sigma_dev = 0, no contacts; F_dev = 0 but with memory
   BasicDirection<T> direction;
-  BasicHistory<T> history{};  ///< only in the form with memory
-  T memory = 0;               ///< of shear, m in [0, 1]; only in the form with memory
+  BasicHistory<T> history{};     ///< only in the form with memory, as is
+  BasicShearHistory<T> shear{};  ///< what shear has left
 
   /// sigma_dev/P; NaN where unjammed.
   T s_dev() const {
@@ -112,14 +113,15 @@ State values_of(const BasicState<T>& s) {
   return {value(s.nu),          value(s.eps_vol),   value(s.eps_dev),
           value(s.P),           value(s.sigma_dev), value(s.F_dev),
           value(s.phi_J),       s.jammed,           values_of(s.direction),
-          values_of(s.history), value(s.memory)};
+          values_of(s.history), values_of(s.shear)};
 }
 
 /// Every number of it but what the direction remembers.
 template <class T>
 bool is_finite(const BasicState<T>& s) {
   return std::isfinite(value(s.nu) + value(s.eps_vol) + value(s.eps_dev) + value(s.P) + value(s.sigma_dev) +
-                       value(s.F_dev) + value(s.history.phi_H) + value(s.history.phi_max) + value(s.memory));
+                       value(s.F_dev) + value(s.history.phi_H) + value(s.history.phi_max) +
+                       value(s.shear.plus) + value(s.shear.minus) + value(s.shear.packed) + value(s.shear.steady));
 }
 
 /// |1 - q x/x_sat|, the scale of S and S_F in a direction. At saturation there is no elastic part: plastic

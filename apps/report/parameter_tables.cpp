@@ -236,7 +236,7 @@ Markup memory_table(const Entries& entries) {
   return "<h3>Memory of the jamming density (Eqs. 5.1 – 5.13), beside chapter 5</h3>\n"_html +
          matrix(entries, "memory", {""}, {"Value"_html},
                 {"phi_SJ", "alpha_max", "alpha_phi", "mu", "beta", "alpha", "eps0", "eps0_R", "phi_cr",
-                 "eps_c", "hold"});
+                 "alpha_P", "eps0_P", "eps0_R_P", "eps_r", "hold", "pack_rate", "phi_pack"});
 }
 
 /// Tables 5.1 and 5.2; nothing where the fits have no memory.

@@ -129,10 +129,20 @@ const std::vector<Symbol> memory{
      "The same from the strains that jam, alone (Eq. 5.2)."},
     {"memory.phi_cr", "<var>φ</var><sub>cr</sub>", "{/:Italic φ}_{cr}", "–",
      "Density below which a reversal of shear unjams the packing."},
-    {"memory.eps_c", "<var>ε</var><sub>c</sub>", "{/:Italic ε}_c", "–",
-     "Strain by which the memory of shear is later than the fabric (form memory)."},
+    {"memory.alpha_P", "<var>α</var><sub>P</sub>", "{/:Italic α}_P", "–",
+     "Exponent of Eq. 5.3 as the pressure of jammed packings has it (form memory)."},
+    {"memory.eps0_P", "<var>ε</var><sub>0,P</sub>", "{/:Italic ε}_{0,P}", "–",
+     "Shear strain of Eq. 5.3, likewise."},
+    {"memory.eps0_R_P", "<var>ε</var><sub>0,R,P</sub>", "{/:Italic ε}_{0,R,P}", "–",
+     "The same after a reversal (Eq. 5.13), likewise."},
+    {"memory.eps_r", "<var>ε</var><sub>r</sub>", "{/:Italic ε}_r", "–",
+     "Strain over which a reversal empties the memory of the direction before (form memory)."},
     {"memory.hold", "<var>h</var>", "{/:Italic h}", "–",
-     "Part of the fabric's rate that steady shear takes (form memory)."},
+     "Part of the fabric's rate that a full reversal takes (form memory)."},
+    {"memory.pack_rate", "<var>k</var><sub>p</sub>", "{/:Italic k}_p", "–",
+     "How much of what a reversal gives back is packed (form memory)."},
+    {"memory.phi_pack", "<var>φ</var><sub>p</sub>", "{/:Italic φ}_p", "–",
+     "Jamming density that shear to and fro packs to (form memory)."},
 };
 
 const std::vector<Symbol> volumetric{

@@ -44,7 +44,7 @@ double isotropic_shear_stiffness(const Law& law, const State& point) {
           const auto c = form.coefficients(point.nu);
           return std::max(0.0, c.B * c.ratio_ini);  // (G/B)_ini is below 0 where F_v < F_v,min
         } else if constexpr (F::form == Form::memory) {
-          const auto stiffness = form.stiffness(form.curve_of(point.history.phi_H, point.memory), point.nu);
+          const auto stiffness = form.stiffness_of(point);
           return stiffness.B * stiffness.ratio_ini;
         } else {
           return point.P * saturation(form.laws.beta_s, point.nu) * saturation(form.laws.s_max, point.nu);

@@ -89,8 +89,9 @@ double grainlaw_stress_unit(const grainlaw_law* law);
 int grainlaw_state_version(void);
 /* 0 for NULL. */
 size_t grainlaw_state_length(const grainlaw_law* law);
-/* The entries of version 1: version, nu, P, sigma_dev, F_dev, phi_J, jammed, eps_vol, eps_dev, phi_J_laws,
- * direction, S_I, S_F_I, s_dev_0, F_dev_0, eps_dev_0, phi_H, phi_max, phi_H_nu, memory (docs/c-interface.md).
+/* The entries of version 2: version, nu, P, sigma_dev, F_dev, phi_J, jammed, eps_vol, eps_dev, phi_J_laws,
+ * direction, S_I, S_F_I, s_dev_0, F_dev_0, eps_dev_0, phi_H, phi_max, phi_H_nu, memory_plus,
+ * memory_minus, packed, phi_t (docs/c-interface.md).
  * NULL where there is none. */
 const char* grainlaw_state_name(const grainlaw_law* law, size_t index);
 /* -1 where there is no such entry. */

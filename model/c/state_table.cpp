@@ -35,7 +35,7 @@ CoaxialState unchecked(const StateRow& row) {
                          .F_0 = row[14],
                          .eps_dev_0 = row[15]},
            .history = {row[16], row[17], row[18]},
-           .memory = row[19]},
+           .shear = {row[19], row[20], row[21], row[22]}},
           row[9]};
 }
 
@@ -69,11 +69,14 @@ std::array<double, state_length> row_of(const CoaxialState& state) {
           s.history.phi_H,
           s.history.phi_max,
           s.history.nu,
-          s.memory};
+          s.shear.plus,
+          s.shear.minus,
+          s.shear.packed,
+          s.shear.steady};
 }
 
 CoaxialState state_of(StateRow row) {
-  must(row[0] == state_version, row, 0, "1, the layout that this grainlaw writes");
+  must(row[0] == state_version, row, 0, "2, the layout that this grainlaw writes");
   for (std::size_t i = 0; i < state_length; ++i) must(i == phi_J || std::isfinite(row[i]), row, i, "finite");
   must(row[1] > 0, row, 1, "> 0");
   must(row[6] == 0 || row[6] == 1, row, 6, "0 or 1");
@@ -83,7 +86,7 @@ CoaxialState state_of(StateRow row) {
   must(row[10] == 0 || std::abs(row[10]) == 1, row, 10, "-1, 0 or 1");
   must(row[11] > 0, row, 11, "> 0");
   must(row[12] > 0, row, 12, "> 0");
-  must(row[19] >= 0 && row[19] <= 1, row, 19, "in [0, 1]");
+  for (std::size_t i = 19; i < 22; ++i) must(row[i] >= 0 && row[i] <= 1, row, i, "in [0, 1]");
   return unchecked(row);
 }
 

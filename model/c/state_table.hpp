@@ -13,7 +13,7 @@
 namespace grainlaw::model {
 
 /// Of the layout. Callers that ask for lengths and for places by name live through a change of it.
-inline constexpr int state_version = 1;
+inline constexpr int state_version = 2;
 
 inline constexpr std::array state_names{
     "version",
@@ -35,7 +35,10 @@ inline constexpr std::array state_names{
     "phi_H",       ///< form memory: phi_J of the isotropic packing; 0 in the others, as what follows
     "phi_max",     ///< largest volume fraction seen
     "phi_H_nu",    ///< volume fraction where this is so
-    "memory"};     ///< of shear, in [0, 1]
+    "memory_plus",   ///< u of shear with d eps_dev > 0, in [0, 1] (laws/shear_memory.hpp)
+    "memory_minus",  ///< the same of the other direction
+    "packed",        ///< part of the way to phi_pack, in [0, 1]
+    "phi_t"};        ///< jamming density of the steady state that it was sheared towards
 inline constexpr std::size_t state_length = state_names.size();
 using StateRow = std::span<const double, state_length>;
 

@@ -89,7 +89,7 @@ Contacts contacts_along(const ContactCurve& curve, double g3, const State& state
 Contacts contacts_of(const Law& law, const State& state) {
   const Laws& laws = laws_of(law);
   if (const auto* memory = std::get_if<Memory>(&law))  // contacts go with phi_J
-    return contacts_along(memory->curve_of(state.history.phi_H, state.memory).contacts, laws.g3, state);
+    return contacts_along(memory->contacts_of(state), laws.g3, state);
   return contacts_along(laws.contacts, laws.g3, state);
 }
 

@@ -14,8 +14,9 @@ namespace grainlaw::model {
 template <class T, std::size_t N>
 struct FormRates {
   StressRates<T> stress;
-  std::array<T, N> v, e;  ///< of the variables; v where nu rises
-  std::array<T, N> back;  ///< per d ln nu where nu falls: only fabric tells them apart
+  std::array<T, N> v, e;       ///< of the variables; v where nu rises
+  std::array<T, N> back;       ///< per d ln nu where nu falls: only fabric and memory tell them apart
+  StressRates<T> stress_back;  ///< only in the form with memory
 };
 
 template <class T>
@@ -42,8 +43,8 @@ StressRates<T> stress_of_variables(const T* y, const FormRates<T, N>& rates) {
 
 /// Eq. 2.14. Below its nu_c, where the law has no pressure, the formula goes on, so that an integration may
 /// look a little beyond.
-template <class T>
-T pressure_beyond(const BasicPressureCurve<T>& p, const T& nu) {
+template <class P, class T>
+T pressure_beyond(const BasicPressureCurve<P>& p, const T& nu) {
   using std::log;
   const T e = log(nu / p.nu_c);
   return p.p0 * nu * coordination(p.contacts, at_least_isostatic(p.contacts, nu)) / p.nu_c * e *
@@ -62,21 +63,36 @@ StressRates<T> stress_of_ratio(const Laws& laws, const T& nu, const T& s, const 
   return {P, s * P, P_v, T(0.0), s * P_v + P * s_v, P * s_e, s, s_v, s_e};
 }
 
-/// Of the form with memory: P* follows from nu, the history and m.
+/// Of the form with memory: P* follows from nu, the history and the variables, of which `by_volume` are the
+/// rates per d ln nu.
 template <class T>
 StressRates<T> stress_of_memory(const Memory& form, const BasicDirection<T>& direction, const T& nu,
-                                const T* y, const FormRates<T, Memory::size>& rates) {
+                                const T* y, const std::array<T, Memory::size>& by_volume,
+                                const std::array<T, Memory::size>& by_shear) {
   using D = Dual<1, T>;
   if (!direction.jammed) return {};
-  D by_volume(nu), m(y[2]), by_shear(y[2]);
-  by_volume.slope[0] = nu;
-  by_shear.slope[0] = rates.e[2];
-  const D phi_H = form.coefficients(by_volume, direction).phi_H;
-  const D v = pressure_beyond<D>(form.curve_of(phi_H, m), by_volume),
-          e = pressure_beyond<D>(form.curve_of(D(phi_H.value), by_shear), D(nu));
+  const auto pressure_along = [&](const T& nu_slope, const std::array<T, Memory::size>& slopes) {
+    D at(nu);
+    at.slope[0] = nu_slope;
+    std::array<D, Memory::size> z;
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      z[i] = D(y[i]);
+      z[i].slope[0] = slopes[i];
+    }
+    const D ratio = at / form.jamming_density_at(form.coefficients(at, direction), z.data());
+    return pressure_beyond(form.laws.pressure, D(form.laws.pressure.nu_c * ratio));
+  };
+  const D v = pressure_along(nu, by_volume), e = pressure_along(T(0.0), by_shear);
   const T P = v.value, P_v = v.slope[0], P_e = e.slope[0], s = y[0] / P;
-  return {
-      P, y[0], P_v, P_e, rates.v[0], rates.e[0], s, (rates.v[0] - s * P_v) / P, (rates.e[0] - s * P_e) / P};
+  return {P,
+          y[0],
+          P_v,
+          P_e,
+          by_volume[0],
+          by_shear[0],
+          s,
+          (by_volume[0] - s * P_v) / P,
+          (by_shear[0] - s * P_e) / P};
 }
 
 /// Eq. 2.17 at the current nu: s = q s_max - (q s_max - s_0) exp(-beta_s E), E = q (eps_dev - eps_dev_0).
@@ -107,7 +123,7 @@ bool form_rates(const Form& form, const State& begin, const Direction& d, const 
     auto coefficients = form.coefficients(nu, direction);
     if (!form.rate(coefficients, BasicStretch<T>{nu, 1.0, 0.0}, direction, y, rates.v.data())) return false;
     rates.back = rates.v;
-    if (form.laws.terms.volumetric) {
+    if (form.laws.terms.volumetric || std::is_same_v<Form, Memory>) {
       if (!form.rate(coefficients, BasicStretch<T>{nu, -1.0, 0.0}, direction, y, rates.back.data()))
         return false;
       for (T& rate : rates.back) rate = -rate;
@@ -119,9 +135,10 @@ bool form_rates(const Form& form, const State& begin, const Direction& d, const 
     }
     if constexpr (std::is_base_of_v<Coupled, Form>)
       rates.stress = stress_of_variables(y, rates);
-    else if constexpr (std::is_same_v<Form, Memory>)
-      rates.stress = stress_of_memory(form, direction, nu, y, rates);
-    else
+    else if constexpr (std::is_same_v<Form, Memory>) {
+      rates.stress = stress_of_memory(form, direction, nu, y, rates.v, rates.e);
+      rates.stress_back = stress_of_memory(form, direction, nu, y, rates.back, rates.e);
+    } else
       rates.stress = stress_of_ratio(form.laws, nu, y[0], rates.v[0], rates.e[0]);
   }
   return true;

@@ -39,6 +39,46 @@ Meet<P, T> jamming_density_after(const BasicOverCompression<P>& o, const T& phi_
   return o.phi_SJ - (limit - o.phi_SJ) * expm1(-pow(M / o.mu, o.beta));
 }
 
+/// The largest volume fraction whose first compression leaves phi (M = 1 in Eq. 5.1); phi_SJ for phi at or
+/// below it.
+template <class P, class T>
+Meet<P, T> first_compression_to(const BasicOverCompression<P>& o, const T& phi) {
+  using std::expm1, std::pow;
+  if (phi <= o.phi_SJ) return o.phi_SJ;
+  const P share = -expm1(-pow(1 / o.mu, o.beta));
+  return o.phi_SJ * (1 + pow((phi - o.phi_SJ) / (o.alpha_max * share), 1 / o.alpha_phi));
+}
+
+/// d phi_J/d ln nu of a packing that jams at phi and is compressed at nu, having been compressed to phi_max
+/// >= nu: up to the density whose first compression leaves phi, compression is part of one more cycle of
+/// Eq. 5.1, M growing with ln nu; from there on it goes as first compressions do, the one passing into the
+/// other over the last 2 % of nu. 0 at nu <= phi.
+template <class P, class T>
+Meet<P, T> growth_by_compression(const BasicOverCompression<P>& o, const T& phi, const T& nu,
+                                 const T& phi_max) {
+  using std::expm1, std::log, std::pow;
+  using R = Meet<P, T>;
+  if (nu <= phi || phi <= o.phi_SJ) return 0.0;
+  const R first = first_compression_to(o, phi), to_go = log(first / nu) / 0.02;
+  R as_cycle = 0.0, as_first = 0.0, part = 0.0;
+  if (to_go < 1) {
+    const P share = -expm1(-pow(1 / o.mu, o.beta));
+    as_first = o.alpha_max * share * o.alpha_phi * pow(nu / o.phi_SJ - 1, o.alpha_phi - 1) * nu / o.phi_SJ;
+    part = 1.0;
+    if (to_go > 0) part = (1 - to_go) * (1 - to_go) * (1 + 2 * to_go);
+  }
+  if (to_go > 0) {
+    R reached = first;
+    if (phi_max < reached) reached = phi_max;
+    const R limit = jamming_density_limit(o, reached);
+    if (phi < limit) {
+      const R x = -log((limit - phi) / (limit - o.phi_SJ)), M = o.mu * pow(x, 1 / o.beta);
+      as_cycle = (limit - phi) * o.beta * x / (M * log(reached / phi));
+    }
+  }
+  return as_cycle + part * (as_first - as_cycle);
+}
+
 /// Where `holds` turns from true to false between low and high.
 template <class Holds>
 double turning_point(double low, double high, Holds holds) {

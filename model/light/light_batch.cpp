@@ -191,17 +191,18 @@ State LightBatch::state(std::size_t i) const {
           at(jammed) > 0,
           {at(direction), at(S_I), at(S_F_I), at(s_0), at(F_0), at(shear_strain_0)},
           {at(isotropic_jamming), at(largest_density), at(history_density)},
-          at(shear_memory)};
+          {at(memory_plus), at(memory_minus), at(memory_packed), at(memory_steady)}};
 }
 
 void LightBatch::set_state(std::size_t i, const State& s) {
   const Direction& d = s.direction;
   const std::array<double, known_density> values{
-      s.nu,         s.eps_vol,   s.eps_dev,       s.P,
-      s.sigma_dev,  s.F_dev,     s.phi_J,         s.jammed ? 1.0 : 0.0,
-      d.q,          d.S_I,       d.S_F_I,         d.s_0,
-      d.F_0,        d.eps_dev_0, s.history.phi_H, s.history.phi_max,
-      s.history.nu, s.memory};
+      s.nu,          s.eps_vol,    s.eps_dev,       s.P,
+      s.sigma_dev,   s.F_dev,      s.phi_J,         s.jammed ? 1.0 : 0.0,
+      d.q,           d.S_I,        d.S_F_I,         d.s_0,
+      d.F_0,         d.eps_dev_0,  s.history.phi_H, s.history.phi_max,
+      s.history.nu,  s.shear.plus, s.shear.minus,   s.shear.packed,
+      s.shear.steady};
   for (std::size_t which = 0; which < values.size(); ++which) values_[which * stride_ + i] = values[which];
 }
 

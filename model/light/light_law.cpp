@@ -35,7 +35,7 @@ BasicState<T> with_slopes(const State& s) {
           s.jammed,
           with_slopes<T>(s.direction),
           with_slopes<T>(s.history),
-          s.memory};
+          {s.shear.plus, s.shear.minus, s.shear.packed, s.shear.steady}};
 }
 
 }  // namespace
@@ -84,8 +84,9 @@ Status LightLaw::admits(const State& state, const Stretch& stretch) const {
     return {Status::Code::failed,
             "the state holds what is not a number: nu, P, sigma_dev, F_dev or its memory"};
   const double slack = std::clamp(10 * light_.tolerance.rtol, 1e-6, 0.01);  // what an integration leaves
-  if (!(state.memory >= -slack && state.memory <= 1 + slack))
-    return {Status::Code::failed, "the memory of shear must be in [0, 1], got " + shown(state.memory)};
+  for (const double x : {state.shear.plus, state.shear.minus, state.shear.packed})
+    if (!(x >= -slack && x <= 1 + slack))
+      return {Status::Code::failed, "the memory of shear must be in [0, 1], got " + shown(x)};
   if (!std::isfinite(stretch.eps_vol) || !std::isfinite(stretch.eps_dev))
     return {Status::Code::failed, "the strain increment must be finite, got eps_vol = " +
                                       shown(stretch.eps_vol) + ", eps_dev = " + shown(stretch.eps_dev)};

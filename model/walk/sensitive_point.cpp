@@ -106,11 +106,13 @@ struct BySensitiveIntegrator {
     return false;  // the others have no events
   }
 
-  /// The volume fraction less that at which the contacts of the pressure law begin, of a memory m.
-  template <class M>
-  M above_contacts(const Stretch& stretch, const Direction& direction, double t, const M& m) const {
+  /// The volume fraction less that at which the contacts of the pressure law begin, which goes with phi_J.
+  template <class Y>
+  Y above_contacts(const Stretch& stretch, const Direction& direction, double t, const Y* y) const {
+    const auto& law = plain.laws.pressure;
     const double nu = stretch.nu(t);
-    return nu - plain.curve_of(plain.coefficients(nu, direction).phi_H, m).contacts.nu_c;
+    return nu -
+           plain.jamming_density_at(plain.coefficients(nu, direction), y) * (law.contacts.nu_c / law.nu_c);
   }
   /// Where it passes 0 before the stretch or its jammed part ends: found by an integration of the values
   /// alone.
@@ -118,9 +120,7 @@ struct BySensitiveIntegrator {
                         const double* begin, std::vector<Crossing>& crossings) const {
     if constexpr (std::is_same_v<Memory, Plain>) {
       if (!direction.jammed) return {};
-      const auto above = [&](double t, const double* y) {
-        return above_contacts(stretch, direction, t, y[2]);
-      };
+      const auto above = [&](double t, const double* y) { return above_contacts(stretch, direction, t, y); };
       system.others = {above};
       std::array<double, Plain::size> y;
       std::copy_n(begin, y.size(), y.begin());
@@ -137,9 +137,10 @@ struct BySensitiveIntegrator {
     return {};
   }
 
-  /// Over the gap before a crossing, from `from`. m is moved by its error to where the contacts begin, or
-  /// rather some roundings beyond, for there the derivatives are infinite. On the way there from above they
-  /// go as a + b h^(alpha - 1), h what is left of it: a and b follow from the rates at `from` and half-way.
+  /// Over the gap before a crossing, from `from`. What phi_J depends on most is moved by its error to where
+  /// the contacts begin, or rather some roundings beyond, for there the derivatives are infinite. On the way
+  /// there from above they go as a + b h^(alpha - 1), h what is left of it: a and b follow from the rates at
+  /// `from` and half-way.
   template <std::size_t size>
   bool step_over(const System& system, const Stretch& stretch, const Direction& direction, double from,
                  const Crossing& to, Variables<S, size>& at) const {
@@ -159,10 +160,10 @@ struct BySensitiveIntegrator {
         move(gap);
         for (std::size_t i = 0; i < first.size(); ++i) at.s[i] += gap * first[i];
       } else {
-        const double nu = stretch.nu(from), high = above_contacts(stretch, direction, from, at.y[2]),
-                     alpha = plain.curve_of(plain.coefficients(nu, direction).phi_H, at.y[2]).contacts.alpha;
+        const double high = above_contacts(stretch, direction, from, at.y.data()),
+                     alpha = plain.laws.pressure.contacts.alpha;
         move(gap / 2);
-        const double low = above_contacts(stretch, direction, from + gap / 2, at.y[2]);
+        const double low = above_contacts(stretch, direction, from + gap / 2, at.y.data());
         if (!(high > low && low > 0) || !rates(from + gap / 2, second)) return false;
         move(gap / 2);
         // What is left of the way, in t, as the volume fraction above the contacts has it.
@@ -173,8 +174,14 @@ struct BySensitiveIntegrator {
           at.s[i] += a * gap + b * std::pow(h, alpha) / alpha;
         }
       }
-      const Dual<1> above = above_contacts(stretch, direction, to.t, Dual<1>(at.y[2], 0));
-      if (above.slope[0] != 0) at.y[2] -= (above.value - (to.rises ? 1e-13 : -1e-13)) / above.slope[0];
+      std::array<Dual<size>, size> y;
+      for (std::size_t i = 0; i < size; ++i) y[i] = Dual<size>(at.y[i], i);
+      const Dual<size> above = above_contacts(stretch, direction, to.t, y.data());
+      std::size_t most = 0;
+      for (std::size_t i = 1; i < size; ++i)
+        if (std::abs(above.slope[i]) > std::abs(above.slope[most])) most = i;
+      if (above.slope[most] != 0)
+        at.y[most] -= (above.value - (to.rises ? 1e-13 : -1e-13)) / above.slope[most];
     }
     return true;
   }

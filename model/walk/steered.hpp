@@ -61,30 +61,13 @@ class Steered {
   /// False where they are not defined, or beyond a singular system.
   template <class T>
   bool solve(const T& t, const T* z, StrainRates<T>& strain, FormRates<T, Form::size>& rates) const {
-    using std::abs, std::exp;
+    using std::exp;
     const T nu = begin_.nu * exp(z[Form::size]), eps_vol = begin_.eps_vol + z[Form::size],
             eps_dev = begin_.eps_dev + z[Form::size + 1];
     if (!form_rates(form_, begin_, begin_.direction, nu, eps_dev, z, rates)) return false;
-    std::array<std::array<T, 2>, 2> slope;
-    std::array<T, 2> a, size_of_a;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const Prescribed& control = controls_[i];
-      slope[i] = control.slopes(nu, rates.stress);
-      const T value = control.value(nu, eps_vol, eps_dev, rates.stress);
-      a[i] = control.change() + pull * (control.begin + control.change() * t - value);
-      size_of_a[i] = abs(a[i]) + pull * (rounding / negligible) * (abs(value) + std::abs(control.begin));
-    }
-    strain.determinant = slope[0][0] * slope[1][1] - slope[0][1] * slope[1][0];
-    strain.numerator = slope[0][0] * a[1] - slope[1][0] * a[0];
-    strain.terms = abs(slope[0][0]) * size_of_a[1] + abs(slope[1][0]) * size_of_a[0];
-    if (q_ == 0) {
-      strain.determinant = slope[leading_][0];
-      strain.v = a[leading_] / strain.determinant;
-      strain.e = 0.0;
-      return true;
-    }
-    strain.v = (a[0] * slope[1][1] - a[1] * slope[0][1]) / strain.determinant;
-    strain.e = strain.numerator / strain.determinant;
+    find_strain(t, nu, eps_vol, eps_dev, rates.stress, strain);
+    if constexpr (std::is_same_v<Form, Memory>)
+      if (strain.v < 0) find_strain(t, nu, eps_vol, eps_dev, rates.stress_back, strain);
     return true;
   }
 
@@ -155,6 +138,32 @@ class Steered {
   }
 
  private:
+  /// Solves the 2 x 2 system of these slopes of stress.
+  template <class T>
+  void find_strain(const T& t, const T& nu, const T& eps_vol, const T& eps_dev, const StressRates<T>& stress,
+                   StrainRates<T>& strain) const {
+    using std::abs;
+    std::array<std::array<T, 2>, 2> slope;
+    std::array<T, 2> a, size_of_a;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Prescribed& control = controls_[i];
+      slope[i] = control.slopes(nu, stress);
+      const T value = control.value(nu, eps_vol, eps_dev, stress);
+      a[i] = control.change() + pull * (control.begin + control.change() * t - value);
+      size_of_a[i] = abs(a[i]) + pull * (rounding / negligible) * (abs(value) + std::abs(control.begin));
+    }
+    strain.determinant = slope[0][0] * slope[1][1] - slope[0][1] * slope[1][0];
+    strain.numerator = slope[0][0] * a[1] - slope[1][0] * a[0];
+    strain.terms = abs(slope[0][0]) * size_of_a[1] + abs(slope[1][0]) * size_of_a[0];
+    if (q_ == 0) {
+      strain.determinant = slope[leading_][0];
+      strain.v = a[leading_] / strain.determinant;
+      strain.e = 0.0;
+      return;
+    }
+    strain.v = (a[0] * slope[1][1] - a[1] * slope[0][1]) / strain.determinant;
+    strain.e = strain.numerator / strain.determinant;
+  }
   /// Errors of the prescribed quantities decay with exp(-pull t).
   static constexpr double pull = 100;
   /// A rate of shear this small against what cancels in it is rounding, as are differences of values this
