@@ -3,8 +3,8 @@
 #include <charconv>
 #include <system_error>
 
-#include "grainlaw/dem/simd.hpp"
-#include "grainlaw/dem/watch.hpp"
+#include "grainlaw/dem/numbers/simd.hpp"
+#include "grainlaw/dem/run/watch.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::apps {

@@ -14,7 +14,7 @@
 #include "grainlaw/apps/locations.hpp"
 #include "grainlaw/apps/report/gnuplot.hpp"
 #include "grainlaw/apps/terminal.hpp"
-#include "grainlaw/dem/provenance.hpp"
+#include "grainlaw/dem/scene/provenance.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/version.hpp"
 #include "grainlaw/model/light/light_batch.hpp"

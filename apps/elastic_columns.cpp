@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "grainlaw/dem/floppy_modes.hpp"
+#include "grainlaw/dem/stiffness/floppy_modes.hpp"
 #include "grainlaw/element/elastic_moduli.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/moduli_table.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "grainlaw/dem/linear_response.hpp"
-#include "grainlaw/dem/static_packing.hpp"
+#include "grainlaw/dem/balance/static_packing.hpp"
+#include "grainlaw/dem/stiffness/linear_response.hpp"
 #include "grainlaw/element/material.hpp"
 #include "grainlaw/element/path.hpp"
 

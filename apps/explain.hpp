@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "grainlaw/dem/cost.hpp"
+#include "grainlaw/dem/run/cost.hpp"
 
 namespace grainlaw::apps {
 

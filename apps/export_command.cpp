@@ -10,9 +10,9 @@
 #include "grainlaw/apps/commands.hpp"
 #include "grainlaw/apps/snapshot_scene.hpp"
 #include "grainlaw/apps/terminal.hpp"
-#include "grainlaw/dem/lammps_data.hpp"
-#include "grainlaw/dem/snapshot.hpp"
-#include "grainlaw/dem/vtp.hpp"
+#include "grainlaw/dem/files/lammps_data.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/record/vtp.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 

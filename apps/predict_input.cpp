@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "grainlaw/apps/arguments.hpp"
-#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/model/strain_table.hpp"
 

@@ -15,7 +15,7 @@
 #include "grainlaw/apps/elastic_columns.hpp"
 #include "grainlaw/apps/snapshot_scene.hpp"
 #include "grainlaw/apps/terminal.hpp"
-#include "grainlaw/dem/probed_packing.hpp"
+#include "grainlaw/dem/stiffness/probed_packing.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/moduli_table.hpp"
 

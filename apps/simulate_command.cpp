@@ -15,9 +15,9 @@
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/calibrate/kept_record.hpp"
 #include "grainlaw/calibrate/lock_file.hpp"
-#include "grainlaw/dem/checkpoint.hpp"
-#include "grainlaw/dem/element_test.hpp"
 #include "grainlaw/dem/observe/names.hpp"
+#include "grainlaw/dem/record/checkpoint.hpp"
+#include "grainlaw/dem/run/element_test.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::apps {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "grainlaw/dem/scene.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 
 namespace grainlaw::apps {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "grainlaw/dem/provenance.hpp"
-#include "grainlaw/dem/simd.hpp"
+#include "grainlaw/dem/numbers/simd.hpp"
+#include "grainlaw/dem/scene/provenance.hpp"
 #include "grainlaw/element/version.hpp"
 #include "grainlaw_dependencies.hpp"
 

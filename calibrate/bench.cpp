@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
-#include "grainlaw/dem/quasistatic.hpp"
-#include "grainlaw/dem/scene.hpp"
-#include "grainlaw/dem/stage.hpp"
+#include "grainlaw/dem/drive/quasistatic.hpp"
+#include "grainlaw/dem/drive/stage.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 
 namespace grainlaw::calibrate {
 

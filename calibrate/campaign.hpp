@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/material.hpp"
 #include "grainlaw/element/path.hpp"

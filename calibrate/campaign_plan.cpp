@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "grainlaw/dem/stage.hpp"
+#include "grainlaw/dem/drive/stage.hpp"
 
 namespace grainlaw::calibrate {
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "grainlaw/calibrate/kept_record.hpp"
-#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/moduli_table.hpp"

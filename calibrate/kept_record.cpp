@@ -1,10 +1,10 @@
 #include "grainlaw/calibrate/kept_record.hpp"
 
 #include "grainlaw/calibrate/campaign.hpp"
-#include "grainlaw/dem/moduli_writer.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
 #include "grainlaw/dem/observe/names.hpp"
-#include "grainlaw/dem/scene.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/record/moduli_writer.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/record.hpp"

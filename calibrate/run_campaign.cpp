@@ -13,7 +13,7 @@
 
 #include "grainlaw/calibrate/campaign_schedule.hpp"
 #include "grainlaw/calibrate/kept_record.hpp"
-#include "grainlaw/dem/checkpoint.hpp"
+#include "grainlaw/dem/record/checkpoint.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 

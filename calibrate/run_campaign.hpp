@@ -12,7 +12,7 @@
 
 #include "grainlaw/calibrate/campaign_folder.hpp"
 #include "grainlaw/calibrate/campaign_plan.hpp"
-#include "grainlaw/dem/element_test.hpp"
+#include "grainlaw/dem/run/element_test.hpp"
 
 namespace grainlaw::calibrate {
 

@@ -132,8 +132,11 @@ void add_memory(BasicLaws<P>& laws, const ParameterSet& parameters, const std::s
   const MemoryLaws& memory = parameters.need_memory(who);
   laws.memory.over = over_compression_of(memory, read);
   if (!memory.eps_r)
-    throw Error(parameters.file, "memory.eps_r",
-                "is missing; " + who + " needs it (fit and calibrate write it)");
+    throw Error(
+        parameters.file, "memory.eps_r",
+        "is missing; " + who +
+            " needs it, and the thesis has none: fit and calibrate write it where tests of role memory "
+            "tell the rest of the group; predict --form minimal does without");
   BasicMemoryNumbers<P>& numbers = laws.memory;
   // By reference: who reads knows a parameter by where it stands.
   const auto either = [&](const std::optional<Parameter>& own, const Parameter& other) {

@@ -6,6 +6,7 @@
 
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/model/columns.hpp"
+#include "grainlaw/model/jamming_events.hpp"
 #include "grainlaw/model/pressure_drift.hpp"
 #include "grainlaw/model/samples.hpp"
 #include "grainlaw/model/start.hpp"
@@ -20,8 +21,6 @@ namespace {
 /// A row further off its leg than this part of it is not on the path (a DEM run may overshoot by a time
 /// step).
 constexpr double off_path = 0.01;
-/// Warnings about lost and found contacts are listed up to this many.
-constexpr std::size_t most_events = 10;
 
 /// The slopes of sensitive_columns(), name by name.
 template <class S>
@@ -29,24 +28,6 @@ void append_slopes(std::vector<double>& row, const BasicState<S>& state, std::si
   const S none(0.0), &F_dev = state.jammed ? state.F_dev : none;  // as in the column itself
   for (std::size_t k = 0; k < names; ++k)
     for (const S* x : {&state.P, &state.sigma_dev, &F_dev, &state.phi_J}) row.push_back(x->slope[k]);
-}
-
-std::string where(double nu, double eps_dev) {
-  return "at nu = " + shown(nu) + ", eps_dev = " + shown(eps_dev);
-}
-
-void tell_events(const std::vector<Event>& events, std::vector<std::string>& warnings) {
-  for (std::size_t i = 0; i < std::min(events.size(), most_events); ++i)
-    warnings.push_back((events[i].jammed ? "jams " : "unjams: loses its pressure ") +
-                       where(events[i].nu, events[i].eps_dev));
-  if (events.size() > most_events)
-    warnings.push_back("unjams and jams " + std::to_string(events.size() - most_events) + " times more");
-}
-
-/// Of a path that was walked so far.
-Status end_status(const Status& status, const State& end) {
-  if (status.code != Status::Code::ok || end.jammed) return status;
-  return {Status::Code::unjammed, "carries no stress at the end: unjammed " + where(end.nu, end.eps_dev)};
 }
 
 struct Walked {

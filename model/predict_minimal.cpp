@@ -6,6 +6,7 @@
 
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/model/columns.hpp"
+#include "grainlaw/model/jamming_events.hpp"
 #include "grainlaw/model/laws/jamming_density.hpp"
 #include "grainlaw/model/samples.hpp"
 
@@ -125,8 +126,26 @@ Contacts contacts_of(const Minimal& law, const MinimalState& state) {
           1 - rattlers(contacts, nu)};
 }
 
-std::string where(const State& point) {
-  return "at nu = " + shown(point.nu) + ", eps_dev = " + shown(point.eps_dev);
+/// Where a straight stretch passes phi_J, which moves as well: it may jam, unjam and jam again. Looked for
+/// between so many points of it, so that no event hangs on the rows that are asked for.
+constexpr int looks = 64;
+
+void find_events(const Minimal& law, const MinimalState& from, double v, double e,
+                 std::vector<Event>& events) {
+  const auto at = [&](double t) { return law.after(from, v * t, e * t); };
+  bool jammed = from.point.jammed;
+  const auto note = [&](const State& point) {
+    jammed = !jammed;
+    events.push_back({jammed, point.nu, point.eps_vol, point.eps_dev});
+  };
+  if (law.turned(from, e).point.jammed != jammed) note(from.point);  // a reversal moves phi_J at once
+  for (int k = 1; k <= looks; ++k) {
+    const double to = static_cast<double>(k) / looks;
+    if (at(to).point.jammed == jammed) continue;
+    note(at(turning_point(to - 1.0 / looks, to, [&](double t) {
+           return at(t).point.jammed == jammed;
+         })).point);
+  }
 }
 
 }  // namespace
@@ -141,6 +160,7 @@ Prediction predict_minimal(const ParameterSet& parameters, const Path& path,
   Prediction prediction{Record(prediction_columns()), start.told(), {}, {}};
   const bool has_phi_cr = parameters.need_memory("minimal").phi_cr.has_value();
   bool reverses = false;
+  std::vector<Event> events;
   auto next = samples.begin();
   for (std::size_t i = 0; i < legs.size(); ++i) {
     const double v = legs[i].eps_vol[1] - legs[i].eps_vol[0], e = legs[i].eps_dev[1] - legs[i].eps_dev[0];
@@ -149,17 +169,19 @@ Prediction predict_minimal(const ParameterSet& parameters, const Path& path,
                                                     : state;  // where a reversal is still to come
       prediction.record.append(row_of(contacts_of(law, there), there.point, i));
     }
-    if (v != 0 || e != 0) state = law.after(state, v, e);
+    if (v != 0 || e != 0) {
+      find_events(law, state, v, e, events);
+      state = law.after(state, v, e);
+    }
     reverses = reverses || state.reversed;
   }
+  tell_events(events, prediction.warnings);
   if (!has_phi_cr && reverses)
     prediction.warnings.push_back(
         "memory.phi_cr is missing: a reversal of shear, at any nu, takes phi_J back to what over-compression "
         "has left");
   prediction.end = state.point;
-  if (!state.point.jammed)
-    prediction.status = {Status::Code::unjammed,
-                         "carries no stress at the end: unjammed " + where(state.point)};
+  prediction.status = end_status({}, prediction.end);
   return prediction;
 }
 

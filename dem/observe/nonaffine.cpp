@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "grainlaw/dem/linked_cells.hpp"
+#include "grainlaw/dem/packing/linked_cells.hpp"
 
 namespace grainlaw::dem::observe {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "grainlaw/dem/dyad.hpp"
-#include "grainlaw/dem/dynamics.hpp"
-#include "grainlaw/dem/measure.hpp"
+#include "grainlaw/dem/numbers/dyad.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
+#include "grainlaw/dem/step/measure.hpp"
 #include "grainlaw/element/material.hpp"
 #include "grainlaw/element/path.hpp"
 

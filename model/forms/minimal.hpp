@@ -88,6 +88,13 @@ struct Minimal {
     return state;
   }
 
+  /// The state where a stretch with this shear begins: beyond a reversal, where it is one.
+  MinimalState turned(MinimalState state, double eps_dev) const {
+    begin_direction(state, sign(eps_dev));
+    settle(state);
+    return state;
+  }
+
   /// phi_J, contacts, stress and fabric that follow from strain and history.
   void settle(MinimalState& state) const {
     State& point = state.point;

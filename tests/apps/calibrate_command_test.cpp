@@ -8,8 +8,8 @@
 #include <set>
 #include <string>
 
-#include "grainlaw/dem/archive.hpp"
-#include "grainlaw/dem/simd.hpp"
+#include "grainlaw/dem/files/archive.hpp"
+#include "grainlaw/dem/numbers/simd.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/json.hpp"
 #include "program.hpp"

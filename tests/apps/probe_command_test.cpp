@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grainlaw/dem/minimise.hpp"
-#include "grainlaw/dem/snapshot.hpp"
-#include "grainlaw/dem/static_packing.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
+#include "grainlaw/dem/balance/static_packing.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
 #include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/record.hpp"
 #include "grainlaw/element/tensor.hpp"

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
 #include "program.hpp"
 
 namespace grainlaw::apps {

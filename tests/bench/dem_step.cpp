@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
-#include "grainlaw/dem/drive.hpp"
-#include "grainlaw/dem/dynamics.hpp"
-#include "grainlaw/dem/forces.hpp"
-#include "grainlaw/dem/preparation.hpp"
+#include "grainlaw/dem/drive/drive.hpp"
+#include "grainlaw/dem/scene/preparation.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
+#include "grainlaw/dem/step/forces.hpp"
 
 namespace {
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
 #include "random_packing.hpp"
 
 namespace {

@@ -13,8 +13,8 @@
 #include <exception>
 #include <string>
 
-#include "grainlaw/dem/floppy_modes.hpp"
-#include "grainlaw/dem/linear_response.hpp"
+#include "grainlaw/dem/stiffness/floppy_modes.hpp"
+#include "grainlaw/dem/stiffness/linear_response.hpp"
 #include "random_packing.hpp"
 #include "stress_differences.hpp"
 

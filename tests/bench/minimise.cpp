@@ -1,7 +1,7 @@
 // grainlaw_bench_minimise NU... SNAPSHOTS.h5... : what each minimiser costs, in processor time and in passes
 // over the contacts, to bring packings back into balance after an affine increment of D2. From each file it
 // takes the last frame of about that volume fraction. Prints medians over the files.
-#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
 #include "nonlinear_cg.hpp"
 
 namespace {

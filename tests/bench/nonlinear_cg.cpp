@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grainlaw/dem/block_jacobi.hpp"
-#include "grainlaw/dem/contact_hessian.hpp"
-#include "grainlaw/dem/field.hpp"
+#include "grainlaw/dem/balance/block_jacobi.hpp"
+#include "grainlaw/dem/balance/contact_hessian.hpp"
+#include "grainlaw/dem/numbers/field.hpp"
 
 namespace grainlaw::dem {
 

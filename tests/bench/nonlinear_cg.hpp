@@ -2,7 +2,7 @@
 // and Ribiere, restarted where beta < 0), preconditioned by each grain's own stiffness.
 #pragma once
 
-#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
 
 namespace grainlaw::dem {
 

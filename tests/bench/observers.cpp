@@ -17,12 +17,12 @@
 #include <string>
 #include <vector>
 
-#include "grainlaw/dem/cost.hpp"
-#include "grainlaw/dem/dynamics.hpp"
-#include "grainlaw/dem/element_test.hpp"
+#include "grainlaw/dem/drive/stage.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
 #include "grainlaw/dem/observe/names.hpp"
-#include "grainlaw/dem/snapshot.hpp"
-#include "grainlaw/dem/stage.hpp"
+#include "grainlaw/dem/run/cost.hpp"
+#include "grainlaw/dem/run/element_test.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
 
 namespace {
 

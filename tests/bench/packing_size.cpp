@@ -10,9 +10,9 @@
 #include <memory>
 #include <vector>
 
-#include "grainlaw/dem/drive.hpp"
-#include "grainlaw/dem/dynamics.hpp"
-#include "grainlaw/dem/trial_packing.hpp"
+#include "grainlaw/dem/drive/drive.hpp"
+#include "grainlaw/dem/run/trial_packing.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
 #include "random_packing.hpp"
 
 namespace {

@@ -9,10 +9,10 @@
 #include <exception>
 #include <string>
 
-#include "grainlaw/dem/drive.hpp"
-#include "grainlaw/dem/dynamics.hpp"
-#include "grainlaw/dem/lammps_data.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/drive/drive.hpp"
+#include "grainlaw/dem/files/lammps_data.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
 #include "grainlaw/element/file.hpp"
 
 namespace {

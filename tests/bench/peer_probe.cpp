@@ -15,13 +15,13 @@
 #include <exception>
 #include <string>
 
-#include "grainlaw/dem/drive.hpp"
-#include "grainlaw/dem/dynamics.hpp"
-#include "grainlaw/dem/lammps_data.hpp"
-#include "grainlaw/dem/linear_response.hpp"
-#include "grainlaw/dem/minimise.hpp"
-#include "grainlaw/dem/probe.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
+#include "grainlaw/dem/drive/drive.hpp"
+#include "grainlaw/dem/files/lammps_data.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
+#include "grainlaw/dem/stiffness/linear_response.hpp"
+#include "grainlaw/dem/stiffness/probe.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "stress_differences.hpp"

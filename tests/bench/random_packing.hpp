@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "grainlaw/dem/minimise.hpp"
-#include "grainlaw/dem/preparation.hpp"
-#include "grainlaw/dem/static_packing.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
+#include "grainlaw/dem/balance/static_packing.hpp"
+#include "grainlaw/dem/scene/preparation.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::dem {

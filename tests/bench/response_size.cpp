@@ -8,8 +8,8 @@
 #include <ctime>
 #include <exception>
 
-#include "grainlaw/dem/floppy_modes.hpp"
-#include "grainlaw/dem/linear_response.hpp"
+#include "grainlaw/dem/stiffness/floppy_modes.hpp"
+#include "grainlaw/dem/stiffness/linear_response.hpp"
 #include "random_packing.hpp"
 
 namespace {

@@ -1,7 +1,7 @@
 // grainlaw_bench_six_systems SNAPSHOTS.h5 NU... : the six systems of linear response solved in step against
 // one after the other, in alternating pairs, in processor time. Prints for each density the ratio in the
 // median pair and its range, and by how much the two solutions differ.
-#include "grainlaw/dem/six_systems.hpp"
+#include "grainlaw/dem/stiffness/six_systems.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "grainlaw/dem/minimise.hpp"
-#include "grainlaw/dem/random.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/numbers/random.hpp"
 #include "one_by_one.hpp"
 
 namespace {

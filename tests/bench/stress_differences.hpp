@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grainlaw/dem/linear_response.hpp"
-#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
+#include "grainlaw/dem/stiffness/linear_response.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::dem {

@@ -18,11 +18,11 @@
 #include <sstream>
 #include <string>
 
-#include "grainlaw/dem/drive.hpp"
-#include "grainlaw/dem/dynamics.hpp"
-#include "grainlaw/dem/lammps_data.hpp"
-#include "grainlaw/dem/row_writer.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/drive/drive.hpp"
+#include "grainlaw/dem/files/lammps_data.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/record/row_writer.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 

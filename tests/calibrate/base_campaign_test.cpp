@@ -7,7 +7,7 @@
 
 #include "grainlaw/calibrate/fit_records.hpp"
 #include "grainlaw/calibrate/predict_records.hpp"
-#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/record.hpp"
 #include "grainlaw/model/predict.hpp"
 #include "same_parameters.hpp"

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "campaign_examples.hpp"
-#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 
 namespace grainlaw::calibrate {
 namespace {

@@ -1,5 +1,5 @@
-// Cycles that no fit of eps_c has read: D2 between +-0.1 near jamming and between +-0.4 of a third packing, and
-// UNI through jamming and back, the mixed test of memory. Errors of the forms with the numbers of
+// Cycles that no fit of eps_c has read: D2 between +-0.1 near jamming and between +-0.4 of a third packing,
+// and UNI through jamming and back, the mixed test of memory. Errors of the forms with the numbers of
 // data/grains/w-3.json.
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "grainlaw/calibrate/predict_records.hpp"
-#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/record.hpp"
 #include "grainlaw/model/predict_minimal.hpp"
 

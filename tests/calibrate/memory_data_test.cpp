@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -29,18 +30,36 @@ KnownValues thesis() {
 }
 
 std::vector<CycleDensity> cycles() { return read_over_compression(folder / "over_compression.csv"); }
+std::vector<CycleDensity> cycles(const std::string& what) {
+  return read_over_compression(folder / ("over_compression-" + what + ".csv"));
+}
 std::vector<ShearJamming> runs() { return read_shear_jamming(folder / "shear_jamming.csv"); }
 RelaxedLimit rest() { return relaxed_limit(read_relaxed(folder / "relaxed.csv"), {}); }
 
-/// Mean of phi_J after cycle M to phi_max over the packings.
+/// phi_J after cycle M to phi_max, packing by packing.
+std::vector<double> densities(const std::vector<CycleDensity>& all, double phi_max, double M) {
+  std::vector<double> values;
+  for (const CycleDensity& c : all)
+    if (std::abs(c.phi_max - phi_max) < 1e-4 && c.M == M && c.from_P.known())
+      values.push_back(c.from_P.value);
+  return values;
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+double deviation(const std::vector<double>& values) {
+  const double middle = mean(values);
+  double square = 0;
+  for (const double v : values) square += (v - middle) * (v - middle);
+  return std::sqrt(square / static_cast<double>(values.size() - 1));
+}
+double error_of_mean(const std::vector<double>& values) {
+  return deviation(values) / std::sqrt(static_cast<double>(values.size()));
+}
+
 double mean_density(const std::vector<CycleDensity>& all, double phi_max, double M) {
-  double sum = 0, n = 0;
-  for (const CycleDensity& c : all) {
-    if (std::abs(c.phi_max - phi_max) > 1e-4 || c.M != M || !c.from_P.known()) continue;
-    sum += c.from_P.value;
-    n += 1;
-  }
-  return sum / n;
+  return mean(densities(all, phi_max, M));
 }
 
 void expect_printed(const FitEstimate& e, double value, double digit) {
@@ -103,17 +122,10 @@ TEST(MemoryData, TheSystematicErrorIsLargerThanTheScatter) {
   EXPECT_NEAR(low.reversal.value("phi_cr"), 0.6626, 1e-4);
 }
 
-double deviation(const std::vector<double>& values) {
-  double mean = 0, square = 0;
-  for (const double v : values) mean += v / static_cast<double>(values.size());
-  for (const double v : values) square += (v - mean) * (v - mean);
-  return std::sqrt(square / static_cast<double>(values.size() - 1));
-}
-
 /// The same three packings at the same rate, once prepared with a rest and once without: a packing has no
 /// phi_J of its own to better than this.
 TEST(MemoryData, APackingRepeatsItselfNoBetterThanOthersDo) {
-  const auto rates = read_over_compression(folder / "over_compression-rates.csv");
+  const auto rates = cycles("rates");
   const auto from_rest = cycles();
   double most = 0;
   for (const std::string seed : {"1", "2", "3"}) {
@@ -193,12 +205,9 @@ TEST(MemoryData, JammingAgainHasNoTrendOverFourCycles) {
   std::vector<double> slopes;
   for (const auto& [packing, legs] : packings)
     if (const double found = slope(legs); std::isfinite(found)) slopes.push_back(found);
-  double mean = 0;
-  for (const double s : slopes) mean += s / static_cast<double>(slopes.size());
-  const double error = deviation(slopes) / std::sqrt(static_cast<double>(slopes.size()));
   EXPECT_EQ(slopes.size(), 19u);
-  EXPECT_NEAR(mean, 0.0000, 1e-4);
-  EXPECT_NEAR(error, 0.0019, 1e-4);
+  EXPECT_NEAR(mean(slopes), 0.0000, 1e-4);
+  EXPECT_NEAR(error_of_mean(slopes), 0.0019, 1e-4);
 }
 
 TEST(MemoryData, RelaxedSteadyStatesCeaseToPushWhereTheThesisSays) {
@@ -250,7 +259,7 @@ TEST(MemoryData, SmallAmplitudesEndInCyclesThatRepeat) {
 
 /// Large ones go on in small steps.
 TEST(MemoryData, LargePackingsCreep) {
-  const auto all = read_over_compression(folder / "over_compression-9261.csv");
+  const auto all = cycles("9261");
   const auto at_68 = last_cycles(all, 0.68, "1", 50), at_82 = last_cycles(all, 0.82, "1", 30);
   ASSERT_EQ(at_68.size(), 50u);
   EXPECT_NEAR(at_68[0], 0.6590, 1e-4);
@@ -271,21 +280,123 @@ TEST(MemoryData, LargePackingsCreep) {
 
 /// One cycle to 0.82: packings of 500 grains jam at lower densities, those of 1000 to 20000 alike.
 TEST(MemoryData, WhatTheNumberOfGrainsCosts) {
-  const auto first = [](const std::string& what) {
-    return mean_density(read_over_compression(folder / ("over_compression-" + what + ".csv")), 0.82, 1);
-  };
+  const auto first = [](const std::string& what) { return mean_density(cycles(what), 0.82, 1); };
   EXPECT_NEAR(first("N500"), 0.6634, 1e-4);
   for (const char* count : {"N1000", "N2000", "N4000", "N20000", "base"})
     EXPECT_NEAR(first(count), 0.6650, 3e-4) << count;
   EXPECT_NEAR(first("base"), 0.6652, 1e-4);  // as the thesis's
   EXPECT_NEAR(first("prepared-slowly"), 0.6641, 1e-4);
   EXPECT_NEAR(first("prepared-fast"), 0.6645, 1e-4);
+  EXPECT_NEAR(first("N1000") - mean_density(cycles(), 0.82, 1), 1.4e-3, 1e-4);
+}
+
+TEST(MemoryData, ErrorsOfTheMeansOverPackings) {
+  for (const auto& [what, error] : {std::pair{"N500", 6.8e-4},
+                                    {"N1000", 1.8e-4},
+                                    {"N2000", 3.0e-4},
+                                    {"N4000", 1.8e-4},
+                                    {"base", 1.9e-4},
+                                    {"prepared-slowly", 1.5e-4},
+                                    {"prepared-fast", 3.4e-4}})
+    EXPECT_NEAR(error_of_mean(densities(cycles(what), 0.82, 1)), error, 1e-5) << what;
+}
+
+/// What runs of shear count from is what one compression left of the same packing; as packings of this number
+/// have it that were made otherwise.
+TEST(MemoryData, ShearCountsFromTheDensityThatOneCompressionLeft) {
+  const auto before = cycles("2000");
+  ASSERT_EQ(before.size(), 9u);
+  std::size_t legs = 0;
+  for (const ShearJamming& leg : runs())
+    for (const CycleDensity& c : before)
+      if (c.group == leg.group && std::abs(c.phi_max - leg.phi_max) < 1e-4) {
+        EXPECT_EQ(leg.phi_J0.value, c.from_P.value) << leg.group << ' ' << leg.phi_max;
+        EXPECT_EQ(leg.phi_J0.error, c.from_P.error) << leg.group << ' ' << leg.phi_max;
+        ++legs;
+      }
+  EXPECT_EQ(legs, runs().size());
+  EXPECT_NEAR(mean_density(before, 0.82, 1), mean_density(cycles("N2000"), 0.82, 1), 4e-4);
+  EXPECT_LT(mean_density(before, 0.68, 1), mean_density(before, 0.73, 1));
+  EXPECT_LT(mean_density(before, 0.73, 1), mean_density(before, 0.82, 1));
+}
+
+/// Cycles of 10 ms, of the packings of over_compression.csv.
+TEST(MemoryData, SlowerCyclesLeaveTheSameDensities) {
+  const auto fast = cycles(), slow = cycles("slow");
+  const auto higher = [&](double phi_max, double M) {
+    return mean_density(slow, phi_max, M) - mean_density(fast, phi_max, M);
+  };
+  EXPECT_NEAR(mean_density(slow, 0.67, 1), 0.6583, 1e-4);
+  EXPECT_NEAR(deviation(densities(slow, 0.67, 1)), 0.0018, 1e-4);
+  EXPECT_NEAR(higher(0.68, 1), 0, 5e-5);
+  for (const double phi_max : {0.73, 0.77, 0.82, 0.90}) {
+    EXPECT_GT(higher(phi_max, 1), 3e-4) << phi_max;
+    EXPECT_LT(higher(phi_max, 1), 5e-4) << phi_max;
+  }
+  for (const double phi_max : {0.68, 0.70, 0.73, 0.77, 0.82, 0.90})
+    EXPECT_LT(std::abs(higher(phi_max, 3)), 4e-4) << phi_max;
+  EXPECT_NEAR(higher(0.67, 3), 9e-4, 1e-4);  // next to phi_SJ, where the three deviate by more
+  EXPECT_GT(deviation(densities(slow, 0.67, 3)), higher(0.67, 3));
+}
+
+TEST(MemoryData, SlowerCyclesHaveTheSameExponent) {
+  const double alpha_phi =
+      fit_memory(cycles("slow"), runs(), thesis(), rest().by_pressure).over_compression.value("alpha_phi");
+  EXPECT_GT(alpha_phi, 0.39 - 5e-3);
+  EXPECT_LT(alpha_phi, 0.43 + 5e-3);
+}
+
+/// From 4e-5 to 1.5e-6 per us, in this order: no trend that both amplitudes share.
+TEST(MemoryData, TheRateShiftsDensitiesOppositeWays) {
+  const auto all = cycles("rates");
+  const auto by_rate = [&](double phi_max) {
+    std::vector<double> means;
+    const std::vector<double> first = densities(all, phi_max, 1);
+    for (std::size_t i = 0; i < first.size(); i += 3)  // three packings each; the slowest has two to 0.82
+      means.push_back(mean({first.begin() + static_cast<std::ptrdiff_t>(i),
+                            first.begin() + static_cast<std::ptrdiff_t>(std::min(i + 3, first.size()))}));
+    return means;
+  };
+  const auto expect_means = [](const std::vector<double>& found, const std::vector<double>& printed) {
+    ASSERT_EQ(found.size(), printed.size());
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], printed[i], 1e-4) << i;
+  };
+  expect_means(by_rate(0.68), {0.6590, 0.6592, 0.6594, 0.6609, 0.6604});
+  expect_means(by_rate(0.82), {0.6649, 0.6648, 0.6641, 0.6640, 0.6642});
+}
+
+/// The campaigns whose records stand in data/records: their branches again, at the thesis's row ISO.
+TEST(MemoryData, RecordsThatAreKeptGiveTheirTables) {
+  const auto iso = model::ParameterSet::load(thesis_file()).isotropic.at("iso");
+  KnownValues laws{{"C0", iso.pressure().contacts.C0}};
+  for (const auto& [name, p] : {std::pair{"C1", iso.C1},
+                                {"alpha", iso.alpha},
+                                {"phi_c", iso.phi_c},
+                                {"phi_v", iso.phi_v},
+                                {"p0", iso.p0}})
+    laws.emplace(name, p.value);
+  for (const std::string campaign : {"quick", "base"}) {
+    const auto table = cycles(campaign);
+    std::size_t found = 0;
+    for (const TestRecord& test : read_records(folder.parent_path() / "records" / campaign).tests) {
+      if (test.test != "iso") continue;
+      ASSERT_LT(found, table.size()) << test.name;
+      const auto again = cycle_densities(test, laws, {});
+      ASSERT_EQ(again.size(), 1u) << test.name;
+      EXPECT_EQ(again[0].group, table[found].group);
+      EXPECT_NEAR(again[0].from_P.value, table[found].from_P.value, 1e-7) << campaign << ' ' << test.name;
+      EXPECT_NEAR(again[0].from_P.error, table[found].from_P.error, 1e-7) << campaign << ' ' << test.name;
+      ++found;
+    }
+    EXPECT_EQ(found, table.size());
+  }
+  EXPECT_NEAR(mean_density(cycles("quick"), 0.82, 1), 0.6644, 1e-4);
 }
 
 /// Shear to and fro packs loose packings, little strain none; far shear one way loosens dense ones.
 TEST(MemoryData, Tapping) {
   const auto all = read_tapped(folder / "tapped.csv");
-  const auto mean = [&](double phi_max, double amplitude, double strain) {
+  const auto tapped = [&](double phi_max, double amplitude, double strain) {
     double sum = 0, n = 0;
     for (const TappedDensity& t : all) {
       const bool is = std::abs(t.phi_max - phi_max) < 1e-4 && std::abs(t.amplitude - amplitude) < 1e-6 &&
@@ -296,13 +407,16 @@ TEST(MemoryData, Tapping) {
     EXPECT_EQ(n, 3);
     return sum / n;
   };
-  EXPECT_NEAR(mean(0.68, 0.005, 1), 0.6605, 1e-4);
-  EXPECT_NEAR(mean(0.68, 0.02, 0.8), 0.6632, 1e-4);
-  EXPECT_NEAR(mean(0.68, 0.08, 0.96), 0.6652, 1e-4);
-  EXPECT_NEAR(mean(0.68, 0.15, 0.3), 0.6600, 1e-4);
-  EXPECT_NEAR(mean(0.82, 0.02, 0.8), 0.6674, 1e-4);
-  EXPECT_NEAR(mean(0.82, 0.08, 0.96), 0.6669, 1e-4);
-  EXPECT_NEAR(mean(0.82, 0.15, 0.3), 0.6609, 1e-4);
+  const auto before = cycles("untapped");
+  EXPECT_NEAR(mean_density(before, 0.68, 1), 0.6597, 1e-4);
+  EXPECT_NEAR(mean_density(before, 0.82, 3), 0.6661, 1e-4);
+  EXPECT_NEAR(tapped(0.68, 0.005, 1), 0.6605, 1e-4);
+  EXPECT_NEAR(tapped(0.68, 0.02, 0.8), 0.6632, 1e-4);
+  EXPECT_NEAR(tapped(0.68, 0.08, 0.96), 0.6652, 1e-4);
+  EXPECT_NEAR(tapped(0.68, 0.15, 0.3), 0.6600, 1e-4);
+  EXPECT_NEAR(tapped(0.82, 0.02, 0.8), 0.6674, 1e-4);
+  EXPECT_NEAR(tapped(0.82, 0.08, 0.96), 0.6669, 1e-4);
+  EXPECT_NEAR(tapped(0.82, 0.15, 0.3), 0.6609, 1e-4);
 }
 
 /// What the quick campaign runs of it: three amplitudes, ten cycles at one.

@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "campaign_examples.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/record.hpp"
@@ -380,7 +380,8 @@ TEST_F(RunCampaign, AKeptRecordMustBeWholeAndOfItsScene) {
               AllOf(HasSubstr("iso-s2/record.csv: no such file"),
                     HasSubstr("; remove " + (records / "iso-s2").string())));
   EXPECT_THAT(refusal([&] { cut("d2-0.7-s1/record.csv", 2000); }),
-              AllOf(HasSubstr("d2-0.7-s1/record.csv: must have 101 rows as its scene says, got"), HasSubstr("; remove ")));
+              AllOf(HasSubstr("d2-0.7-s1/record.csv: must have 101 rows as its scene says, got"),
+                    HasSubstr("; remove ")));
   EXPECT_THAT(refusal([&] { write_file(records / "d2-0.7-s1/record.csv", "nu,P\n0.5,nan\n"); }),
               HasSubstr("d2-0.7-s1/record.csv"));
   EXPECT_THAT(refusal([&] {

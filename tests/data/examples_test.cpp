@@ -6,7 +6,7 @@
 #include <set>
 
 #include "grainlaw/calibrate/campaign.hpp"
-#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/path.hpp"

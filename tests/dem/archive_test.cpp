@@ -1,5 +1,5 @@
 // Binary archives: what is written is read back, and a file that was changed in any way is refused.
-#include "grainlaw/dem/archive.hpp"
+#include "grainlaw/dem/files/archive.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

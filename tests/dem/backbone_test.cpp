@@ -1,10 +1,10 @@
-#include "grainlaw/dem/backbone.hpp"
+#include "grainlaw/dem/balance/backbone.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "grainlaw/dem/static_packing.hpp"
+#include "grainlaw/dem/balance/static_packing.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {

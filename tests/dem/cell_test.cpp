@@ -1,6 +1,6 @@
 // The box: its lattice against brute force, and packings in tilted boxes against the same packings told
 // otherwise.
-#include "grainlaw/dem/cell.hpp"
+#include "grainlaw/dem/packing/cell.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "grainlaw/dem/drive.hpp"
+#include "grainlaw/dem/drive/drive.hpp"
 #include "grainlaw/element/error.hpp"
 #include "packings.hpp"
 

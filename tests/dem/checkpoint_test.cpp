@@ -1,6 +1,6 @@
 // A test that is stopped or killed at any moment and gone on with makes the same record as one left alone, to
 // the last bit; a checkpoint that is damaged or another test's is refused.
-#include "grainlaw/dem/checkpoint.hpp"
+#include "grainlaw/dem/record/checkpoint.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,10 +14,10 @@
 #include <cstring>
 #include <thread>
 
-#include "grainlaw/dem/dynamics.hpp"
-#include "grainlaw/dem/element_test.hpp"
-#include "grainlaw/dem/simd.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/numbers/simd.hpp"
+#include "grainlaw/dem/run/element_test.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "packings.hpp"

@@ -1,4 +1,4 @@
-#include "grainlaw/dem/contact_hessian.hpp"
+#include "grainlaw/dem/balance/contact_hessian.hpp"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "grainlaw/dem/block_jacobi.hpp"
-#include "grainlaw/dem/static_packing.hpp"
+#include "grainlaw/dem/balance/block_jacobi.hpp"
+#include "grainlaw/dem/balance/static_packing.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {

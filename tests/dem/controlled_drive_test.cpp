@@ -1,6 +1,6 @@
 // Element tests under stress control and at a steered rate: rows are on target, presets are one thing, and
 // what cannot be reached is said.
-#include "grainlaw/dem/controlled_drive.hpp"
+#include "grainlaw/dem/drive/controlled_drive.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <string>
 
-#include "grainlaw/dem/element_test.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/run/element_test.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/record.hpp"

@@ -1,6 +1,6 @@
 // What --explain says of a scene: planned steps, rows and bytes against a run of it. That the times are right
 // is for tests/bench/observers to show: a test machine is too busy.
-#include "grainlaw/dem/cost.hpp"
+#include "grainlaw/dem/run/cost.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 
 #include <filesystem>
 
-#include "grainlaw/dem/element_test.hpp"
 #include "grainlaw/dem/observe/observers.hpp"
+#include "grainlaw/dem/run/element_test.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/record.hpp"
 

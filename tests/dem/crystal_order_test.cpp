@@ -1,5 +1,5 @@
 // A crystal is told from a random packing.
-#include "grainlaw/dem/crystal_order.hpp"
+#include "grainlaw/dem/packing/crystal_order.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

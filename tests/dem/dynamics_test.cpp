@@ -1,5 +1,5 @@
 // What the equations of motion promise: momentum, energy, and what each damping acts on.
-#include "grainlaw/dem/dynamics.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
 
 #include <gtest/gtest.h>
 

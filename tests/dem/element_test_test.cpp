@@ -1,6 +1,6 @@
 // A scene from beginning to end: columns, determinism, stopping, continuing from a snapshot, and what is
 // refused.
-#include "grainlaw/dem/element_test.hpp"
+#include "grainlaw/dem/run/element_test.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "grainlaw/dem/files/snapshot.hpp"
 #include "grainlaw/dem/observe/names.hpp"
-#include "grainlaw/dem/snapshot.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/record.hpp"

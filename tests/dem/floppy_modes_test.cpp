@@ -1,12 +1,12 @@
 // Floppy modes counted, against lattices with known ones and against the rank of the contacts' matrix.
-#include "grainlaw/dem/floppy_modes.hpp"
+#include "grainlaw/dem/stiffness/floppy_modes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
 #include "lattices.hpp"
 #include "packings.hpp"
 

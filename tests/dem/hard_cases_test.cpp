@@ -8,8 +8,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "grainlaw/dem/element_test.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/run/element_test.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/record.hpp"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "grainlaw/dem/advance.hpp"
-#include "grainlaw/dem/forces.hpp"
+#include "grainlaw/dem/step/advance.hpp"
+#include "grainlaw/dem/step/forces.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {

@@ -1,5 +1,5 @@
 // The data file holds the packing to the last bit.
-#include "grainlaw/dem/lammps_data.hpp"
+#include "grainlaw/dem/files/lammps_data.hpp"
 
 #include <gtest/gtest.h>
 

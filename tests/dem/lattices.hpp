@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "grainlaw/dem/matrix.hpp"
-#include "grainlaw/dem/state.hpp"
+#include "grainlaw/dem/numbers/matrix.hpp"
+#include "grainlaw/dem/packing/state.hpp"
 
 namespace grainlaw::dem::test {
 

@@ -1,11 +1,11 @@
 // Stiffness from the contact network: against strains that are applied, closed forms and symmetries.
-#include "grainlaw/dem/linear_response.hpp"
+#include "grainlaw/dem/stiffness/linear_response.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/symmetry_class.hpp"
 #include "lattices.hpp"

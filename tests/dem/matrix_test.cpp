@@ -1,5 +1,5 @@
 // Small matrices against what defines them.
-#include "grainlaw/dem/matrix.hpp"
+#include "grainlaw/dem/numbers/matrix.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Stress as the derivative of energy, contacts counted by hand, and invariance under what must not matter.
-#include "grainlaw/dem/measure.hpp"
+#include "grainlaw/dem/step/measure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "grainlaw/dem/random.hpp"
+#include "grainlaw/dem/numbers/random.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {

@@ -1,4 +1,4 @@
-#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "grainlaw/dem/newton_krylov.hpp"
+#include "grainlaw/dem/balance/newton_krylov.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {

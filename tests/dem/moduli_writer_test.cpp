@@ -1,6 +1,6 @@
 // Moduli along a test: those of the very states, without a trace in the test itself; refused states have a
 // row and a reason.
-#include "grainlaw/dem/moduli_writer.hpp"
+#include "grainlaw/dem/record/moduli_writer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 
 #include <cmath>
 
-#include "grainlaw/dem/element_test.hpp"
-#include "grainlaw/dem/probed_packing.hpp"
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/run/element_test.hpp"
+#include "grainlaw/dem/stiffness/probed_packing.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/moduli_table.hpp"

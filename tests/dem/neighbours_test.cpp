@@ -1,12 +1,12 @@
 // The neighbour list against brute force over all images, at random moments of runs in which grains fly and
 // the box deforms.
-#include "grainlaw/dem/neighbours.hpp"
+#include "grainlaw/dem/step/neighbours.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "grainlaw/dem/random.hpp"
+#include "grainlaw/dem/numbers/random.hpp"
 #include "grainlaw/element/error.hpp"
 #include "packings.hpp"
 

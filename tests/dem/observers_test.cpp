@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-#include "grainlaw/dem/random.hpp"
+#include "grainlaw/dem/numbers/random.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {

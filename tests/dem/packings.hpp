@@ -9,11 +9,11 @@
 #include <tuple>
 #include <vector>
 
-#include "grainlaw/dem/cell.hpp"
-#include "grainlaw/dem/dynamics.hpp"
-#include "grainlaw/dem/preparation.hpp"
-#include "grainlaw/dem/random.hpp"
-#include "grainlaw/dem/state.hpp"
+#include "grainlaw/dem/numbers/random.hpp"
+#include "grainlaw/dem/packing/cell.hpp"
+#include "grainlaw/dem/packing/state.hpp"
+#include "grainlaw/dem/scene/preparation.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
 
 namespace grainlaw::dem::test {
 

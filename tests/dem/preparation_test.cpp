@@ -1,13 +1,13 @@
 // Random numbers, radii and the initial gas.
-#include "grainlaw/dem/preparation.hpp"
+#include "grainlaw/dem/scene/preparation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "grainlaw/dem/random.hpp"
-#include "grainlaw/dem/size_distribution.hpp"
+#include "grainlaw/dem/numbers/random.hpp"
+#include "grainlaw/dem/packing/size_distribution.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {

@@ -1,11 +1,11 @@
 // Probes of a packing in balance against its linear response.
-#include "grainlaw/dem/probe.hpp"
+#include "grainlaw/dem/stiffness/probe.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {

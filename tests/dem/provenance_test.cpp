@@ -1,10 +1,10 @@
 // Provenance: every key of docs/formats.md, and the unit of stress that a record's numbers stand in.
-#include "grainlaw/dem/provenance.hpp"
+#include "grainlaw/dem/scene/provenance.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "grainlaw/dem/simd.hpp"
+#include "grainlaw/dem/numbers/simd.hpp"
 #include "grainlaw/element/version.hpp"
 
 namespace grainlaw::dem {

@@ -1,11 +1,11 @@
 // Paths of vanishing rate: from one balance to the next.
-#include "grainlaw/dem/quasistatic.hpp"
+#include "grainlaw/dem/drive/quasistatic.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
 #include "grainlaw/element/error.hpp"
 #include "packings.hpp"
 

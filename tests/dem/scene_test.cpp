@@ -1,6 +1,6 @@
 // Scenes: defaults as documented, a round trip that changes nothing, and one clear line for each kind of bad
 // input.
-#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "grainlaw/dem/dynamics.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::dem {

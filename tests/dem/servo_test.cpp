@@ -1,6 +1,6 @@
 // The servo alone, on a packing that answers linearly: the error falls as promised, a ramp is followed,
 // limits hold.
-#include "grainlaw/dem/servo.hpp"
+#include "grainlaw/dem/drive/servo.hpp"
 
 #include <gtest/gtest.h>
 

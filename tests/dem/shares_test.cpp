@@ -1,5 +1,5 @@
 // Threads share a step without a trace in its result.
-#include "grainlaw/dem/shares.hpp"
+#include "grainlaw/dem/step/shares.hpp"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <set>
 
-#include "grainlaw/dem/forces.hpp"
+#include "grainlaw/dem/step/forces.hpp"
 #include "grainlaw/element/thread_pool.hpp"
 #include "packings.hpp"
 

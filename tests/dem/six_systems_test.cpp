@@ -1,14 +1,14 @@
 // Six systems in step: each is solved, on every instruction set, and is the one that its right-hand side asks
 // for.
-#include "grainlaw/dem/six_systems.hpp"
+#include "grainlaw/dem/stiffness/six_systems.hpp"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
 #include <cmath>
 
-#include "grainlaw/dem/field.hpp"
-#include "grainlaw/dem/minimise.hpp"
+#include "grainlaw/dem/balance/minimise.hpp"
+#include "grainlaw/dem/numbers/field.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {

@@ -1,6 +1,6 @@
 // Snapshot files: what is written comes back digit for digit, the layout is H5MD, and a damaged file never
 // passes for a whole one.
-#include "grainlaw/dem/snapshot.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>

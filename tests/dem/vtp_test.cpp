@@ -1,5 +1,5 @@
 // What ParaView is given: every grain, every contact, and pressures that add up to that of the packing.
-#include "grainlaw/dem/vtp.hpp"
+#include "grainlaw/dem/record/vtp.hpp"
 
 #include <gtest/gtest.h>
 

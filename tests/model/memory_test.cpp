@@ -16,6 +16,7 @@
 namespace grainlaw::model {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
@@ -363,7 +364,9 @@ TEST(Memory, StartsFromPressureOrJammingDensityOrCompression) {
   EXPECT_EQ(compressed.history.phi_max, 0.75);
   EXPECT_THAT(refusal([&] { start(R"({"nu": 0.7, "P": 0.017, "phi_J": 0.664})"); }),
               HasSubstr("phi_J: redundant"));
-  EXPECT_THAT(refusal([] { make_law(thesis(), Form::memory); }), HasSubstr("memory.eps_c: is missing"));
+  EXPECT_THAT(refusal([] { make_law(thesis(), Form::memory); }),
+              AllOf(HasSubstr("memory.eps_c: is missing"), HasSubstr("calibrate write it"),
+                    HasSubstr("--form minimal does without")));
 }
 
 }  // namespace

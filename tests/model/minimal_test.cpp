@@ -11,6 +11,7 @@
 namespace grainlaw::model {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// Tables 5.1 and 5.2, with a phi_cr.
@@ -56,6 +57,39 @@ TEST(Minimal, TheStrainToJamIsThatOfTheThesis) {
     std::size_t row = 0;
     while (record["P"][row] == 0) ++row;
     EXPECT_NEAR(record["eps_dev"][row], strain, 1e-4);
+  }
+}
+
+/// By Eqs. 5.3 and 5.13 inverted for phi_J = nu; a reversal at nu <= phi_cr unjams where it comes.
+TEST(Minimal, TellsWhereItJamsAndUnjams) {
+  const auto strain = [](double from, double eps0) {
+    return eps0 * std::pow(-std::log((0.6593 - 0.6567) / (from - 0.6567)), 1 / 1.37);
+  };
+  const auto at = [](double eps_dev) { return " at nu = 0.6593, eps_dev = " + shown(eps_dev); };
+  const std::string jams = "jams", unjams = "unjams: loses its pressure";
+  const double first = strain(0.6652, 0.102), again = strain(0.6621, 0.17);
+  for (const int rows : {1, 40})
+    EXPECT_THAT(run(shear_cycle, rows).warnings,
+                ElementsAre(jams + at(first), unjams + at(0.28), jams + at(0.28 - again), unjams + at(-0.16),
+                            jams + at(-0.16 + again)));
+}
+
+/// Volume and shear together, through jamming more than once on one leg: as the rows of a fine table have it.
+TEST(Minimal, TellsOfEveryPassageThroughJamming) {
+  for (const char* segments :
+       {R"({"mode": "iso", "controls": {"nu": 0.7}}, {"mode": "iso", "controls": {"nu": 0.64}},
+           {"mode": "iso", "controls": {"nu": 0.7}})",
+        R"({"mode": "uni", "controls": {"nu": 0.7}}, {"mode": "uni", "controls": {"nu": 0.6}})",
+        R"({"mode": "d2", "amount": 0.3}, {"mode": "iso", "amount": -0.003}, {"mode": "d2", "amount": -0.3},
+           {"mode": "iso", "amount": 0.05}, {"mode": "iso", "amount": -0.06}, {"mode": "d2", "amount": 0.3})"}) {
+    const Prediction p =
+        run(R"({"start": {"nu": 0.66, "phi_J": 0.6652}, "segments": [)" + std::string(segments) + "]}", 5000);
+    std::size_t passages = 0, told = 0;
+    for (std::size_t row = 1; row < p.record.rows(); ++row)
+      passages += (p.record["P"][row] > 0) != (p.record["P"][row - 1] > 0) ? 1 : 0;
+    for (const std::string& warning : p.warnings) told += warning.find("jams") < 3 ? 1 : 0;
+    EXPECT_GT(passages, 1u);
+    EXPECT_EQ(told, passages) << segments;
   }
 }
 

@@ -8,9 +8,9 @@
 
 #include "../documents.hpp"
 #include "grainlaw/calibrate/campaign.hpp"
-#include "grainlaw/dem/element_test.hpp"
 #include "grainlaw/dem/observe/names.hpp"
-#include "grainlaw/dem/scene.hpp"
+#include "grainlaw/dem/run/element_test.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/path.hpp"

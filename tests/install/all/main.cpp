@@ -1,7 +1,7 @@
 // One call into every room, the engine's kernels and files among them: usage all_rooms DATA
 #include <filesystem>
 #include <grainlaw/calibrate/campaign.hpp>
-#include <grainlaw/dem/element_test.hpp>
+#include <grainlaw/dem/run/element_test.hpp>
 #include <grainlaw/model/parameters.hpp>
 #include <iostream>
 #include <string>

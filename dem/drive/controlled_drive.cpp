@@ -1,0 +1,168 @@
+#include "grainlaw/dem/drive/controlled_drive.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::dem {
+
+namespace {
+
+/// Time in which a steered rate may change by a factor e, over the contact duration of two mean grains.
+constexpr double steering_over_contact = 10;
+/// Contacts per grain from which a packing may be jammed (6 hold it, rattlers have none): E_k/E_p means
+/// something.
+constexpr double bearing_contacts = 1.5;
+/// A leg that only waits for stresses ends when they have been reached for so many response times.
+constexpr double settled_responses = 10;
+/// The box must stay so much wider than the largest grain.
+constexpr double narrowest = 1.02;
+
+class ControlledLeg {
+ public:
+  ControlledLeg(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state)
+      : dynamics_(dynamics),
+        leg_(leg),
+        dt_(plan.dt),
+        state_(state),
+        control_(state.control),
+        servo_(dynamics.material(), leg.control),
+        steering_time_(steering_over_contact *
+                       dynamics.material().contact_duration(dynamics.material().r_mean)) {
+    for (const Quad& place : dynamics.grains().place) solid_ += sphere_volume(place.w);
+  }
+
+  void begin() {
+    state_.start_edges = dynamics_.cell().edges();
+    control_.servo = servo_.start(dynamics_.glance());
+    look(0);
+    dynamics_.start(dt_, box_rate(0));
+  }
+
+  void step() {
+    const double own_step = dt_ * control_.speed * control_.servo.throttle;
+    const Vec3 rate = box_rate(own_step);
+    const Mat3 stretch =
+        Mat3::diagonal({std::exp(rate[0] * dt_), std::exp(rate[1] * dt_), std::exp(rate[2] * dt_)});
+    control_.own_time += own_step;
+    dynamics_.step(stretch * dynamics_.cell().edges(), Mat3::diagonal(rate));
+    ++state_.step;
+    control_.looked = state_.step % look_interval == 0;
+    if (control_.looked) look(dt_ * static_cast<double>(look_interval));
+  }
+
+  /// At a look: whether the leg is over, well or not.
+  bool done() {
+    if (!control_.looked) return false;
+    const double out_of_box = dynamics_.cell().narrowest() / (2 * dynamics_.grains().largest_radius());
+    control_.lost = !servo_.possible(control_.servo) || control_.servo.off > leg_.control.servo.wait ||
+                    out_of_box < narrowest || dynamics_.cell().volume() <= solid_ ||
+                    (leg_.drives() && over_the_end());
+    if (control_.lost) return true;
+    if (!servo_.within_tolerance(control_.servo)) return false;
+    return leg_.drives() ? control_.progress >= 1
+                         : control_.servo.on >= settled_responses * servo_.response();
+  }
+
+ private:
+  void look(double elapsed) {
+    const Glance seen = dynamics_.glance();
+    if (leg_.profile == Profile::steered) steer(seen, elapsed);
+    servo_.look(control_.servo, seen, elapsed, driven());
+    control_.on_target = servo_.within_tolerance(control_.servo);
+    control_.progress = progress();
+  }
+
+  /// The rate follows ln(E_k/E_p) towards the wanted one: E_k goes with the rate squared where grains flow.
+  void steer(const Glance& seen, double elapsed) {
+    const bool bears =
+        static_cast<double>(seen.contacts) > bearing_contacts * static_cast<double>(dynamics_.count());
+    const double wanted =
+        bears ? 0.5 * std::log(leg_.wanted_ratio * seen.elastic / seen.kinetic) : -std::log(control_.speed);
+    control_.speed *= std::exp(std::clamp(wanted, -1.0, 1.0) * elapsed / steering_time_);
+    control_.speed = std::clamp(control_.speed, slowest_steered, fastest_steered);
+  }
+
+  /// Largest strain rate of a driven axis, without throttle.
+  double driven() const {
+    if (!leg_.drives()) return 0;
+    const double own_step = dt_ * control_.speed;
+    double largest = 0;
+    for (const double e : leg_.strain) largest = std::max(largest, std::abs(e));
+    return largest * (leg_.progress(control_.own_time + own_step) - leg_.progress(control_.own_time)) / dt_;
+  }
+
+  /// d(ln L)/dt over a step by which the leg's own time goes on by `own_step`.
+  Vec3 box_rate(double own_step) const {
+    const double share =
+        (leg_.progress(control_.own_time + own_step) - leg_.progress(control_.own_time)) / dt_;
+    Vec3 rate = servo_.rates(control_.servo);
+    for (std::size_t c = 0; c < 3; ++c) rate[c] = -(rate[c] + leg_.strain[c] * share);
+    return rate;
+  }
+
+  double progress() const {
+    if (!leg_.drives()) return 0;
+    if (!leg_.to_eps_dev) return leg_.progress(control_.own_time);
+    return (leg_eps_dev(dynamics_, leg_, state_) - leg_.eps_dev[0]) / (*leg_.to_eps_dev - leg_.eps_dev[0]);
+  }
+  /// The strain that certainly reaches eps_dev has not.
+  bool over_the_end() const { return leg_.to_eps_dev && control_.own_time >= leg_.duration; }
+
+  Dynamics& dynamics_;
+  const Leg& leg_;
+  double dt_;
+  LegState& state_;
+  ControlState& control_;
+  Servo servo_;
+  double steering_time_, solid_ = 0;
+};
+
+std::string short_text(double x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", x);
+  return text.data();
+}
+
+}  // namespace
+
+StrainTensor leg_strain(const Dynamics& dynamics, const LegState& state) {
+  const Sym6 strain = dynamics.cell().strain_from(state.start_edges);
+  return {strain[0], strain[1], strain[2]};
+}
+
+double leg_eps_dev(const Dynamics& dynamics, const Leg& leg, const LegState& state) {
+  return leg.eps_dev[0] +
+         signed_deviator(leg_strain(dynamics, state), leg.axis.value_or(StrainTensor{-0.5, -0.5, 1}));
+}
+
+void follow_controlled(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
+                       const AfterStep& after_step) {
+  ControlledLeg controlled(dynamics, leg, plan, state);
+  if (state.step == 0) controlled.begin();
+  while (!controlled.done()) {
+    controlled.step();
+    if (!after_step(state.step)) return;
+  }
+}
+
+std::string why_lost(const Material& material, const Leg& leg, const LegState& state) {
+  const Servo servo(material, leg.control);
+  const ServoState& at = state.control.servo;
+  if (servo.targets().empty()) return "its strain cannot be reached in this box";
+  if (leg.to_eps_dev && state.control.own_time >= leg.duration)
+    return "eps_dev never comes to " + to_text(*leg.to_eps_dev);
+  const std::size_t worst = servo.worst(at);
+  const auto target = servo.targets()[worst];
+  const double unit = material.stress_unit();
+  const std::string name = target ? std::array{"sxx", "syy", "szz"}[*target] : "P";
+  if (!servo.possible(at)) return name + " is 0 where the segment starts, and cannot be kept; give a number";
+  return name + " cannot be kept at " + short_text(at.target[worst] / unit) + " to " +
+         short_text(leg.control.servo.tolerance) + ": it is " + short_text(at.reached[worst] / unit) +
+         " after " + short_text(at.off) + " us out of tolerance";
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,91 @@
+#include "grainlaw/dem/drive/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grainlaw/dem/drive/controlled_drive.hpp"
+#include "grainlaw/dem/drive/quasistatic.hpp"
+
+namespace grainlaw::dem {
+
+namespace {
+constexpr std::uint64_t relax_check_interval = 100;  // steps between two looks at the energies
+}
+
+Drive::Drive(const Mat3& start_edges, const Leg& leg)
+    : start_(start_edges), strain_(matrix_of(leg.strain)), principal_{}, leg_(leg) {
+  if (!strain_.is_diagonal()) principal_ = spectrum(strain_);
+}
+
+Mat3 Drive::edges(double t) const {
+  const double p = leg_.progress(t);
+  const auto stretch = [p](double strain) { return std::exp(-strain * p); };
+  if (!strain_.is_diagonal()) return apply(principal_, stretch) * start_;
+  return Mat3::diagonal({stretch(strain_(0, 0)), stretch(strain_(1, 1)), stretch(strain_(2, 2))}) * start_;
+}
+
+Mat3 Drive::gradient(double t, double dt) const {
+  const double from = std::max(t - 0.5 * dt, 0.0), to = std::min(t + 0.5 * dt, leg_.duration);
+  const double speed = (leg_.progress(to) - leg_.progress(from)) / (to - from);
+  return -speed * strain_;
+}
+
+StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_steps) {
+  const auto needed = static_cast<std::uint64_t>(std::ceil(leg.duration / longest_step * (1 - 1e-12)));
+  StepPlan plan;
+  plan.steps = std::max({std::uint64_t{1}, least_steps, needed});
+  plan.dt = leg.duration / static_cast<double>(plan.steps);
+  return plan;
+}
+
+void follow(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
+            const AfterStep& after_step) {
+  if (state.step == 0) state.start_edges = dynamics.cell().edges();
+  const Drive box(state.start_edges, leg);
+  if (state.step == 0) dynamics.start_flow(plan.dt, box.gradient(0, plan.dt));
+  while (state.step < plan.steps) {
+    const std::uint64_t n = ++state.step;
+    const double t = n == plan.steps ? leg.duration : static_cast<double>(n) * plan.dt;
+    dynamics.step(box.edges(t), box.gradient(t, plan.dt));
+    if (!after_step(n)) return;
+  }
+}
+
+void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
+           const AfterStep& after_step) {
+  if (state.step == 0) {
+    dynamics.start(plan.dt, {});
+    state.kinetic_at_start = dynamics.energies().kinetic;
+  }
+  const auto at_rest = [&] {
+    if (state.step == 0 || state.step % relax_check_interval != 0) return false;
+    const Energies e = dynamics.energies();
+    if (e.kinetic > leg.tolerance * std::max(e.elastic, state.kinetic_at_start)) return false;
+    const Measurement m = dynamics.measure();
+    return m.f_NR > 0 ? m.kinetic <= leg.tolerance * m.elastic
+                      : m.kinetic <= leg.tolerance * state.kinetic_at_start;
+  };
+  while (state.step < plan.steps && !at_rest()) {
+    dynamics.step();
+    if (!after_step(++state.step)) return;
+  }
+}
+
+void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& state,
+           const AfterStep& after_step, const std::atomic<bool>* stop) {
+  if (leg.controlled())
+    follow_controlled(dynamics, leg, plan, state, after_step);
+  else if (leg.minimises())
+    follow_quasistatic(dynamics, leg, plan, state, after_step, stop);
+  else if (leg.mode == Mode::relax)
+    relax(dynamics, leg, plan, state, after_step);
+  else
+    follow(dynamics, leg, plan, state, after_step);
+}
+
+void drive(Dynamics& dynamics, const Leg& leg, const StepPlan& plan) {
+  LegState state;
+  drive(dynamics, leg, plan, state, [](std::uint64_t) { return true; });
+}
+
+}  // namespace grainlaw::dem

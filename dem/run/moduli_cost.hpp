@@ -1,0 +1,16 @@
+// What it takes to measure the moduli of one state, from a trial on a smaller packing.
+#pragma once
+
+#include <cstddef>
+
+#include "grainlaw/dem/packing/state.hpp"
+#include "grainlaw/element/material.hpp"
+
+namespace grainlaw::dem {
+
+/// Processor seconds of one state of `grains` grains: what a trial state takes to be brought into balance and
+/// solved for its linear response, times (grains over its own)^1.4. The power is that of packings of 1000 to
+/// 100000 grains (docs/stiffness.md): larger ones need more iterations, and leave the cache.
+double moduli_seconds(const Material& material, const State& trial, std::size_t grains);
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,79 @@
+#include "grainlaw/dem/run/trial_packing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "grainlaw/dem/drive/drive.hpp"
+#include "grainlaw/dem/scene/preparation.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
+
+namespace grainlaw::dem {
+
+namespace {
+
+constexpr double trial_step = 0.1;  // over t_c, while trial packings are made
+// Packings of up to so many grains are tried as they are; larger ones are made of copies of one of at most
+// base_grains. In copies of few grains lists live too long, the fastest of few being slower than of many; in
+// whole packings of many not long enough, since a trial is less at rest than what it stands for.
+constexpr std::size_t whole_trial = 5000, base_grains = 4000;
+constexpr std::size_t largest_trial = 200'000;  // beyond, a grain costs the same
+
+}  // namespace
+
+State laid_out(const State& one, std::size_t times) {
+  State state = one;
+  state.position.clear();
+  state.velocity.clear();
+  state.radius.clear();
+  state.box = static_cast<double>(times) * one.box;
+  const Vec3 edge = one.box.diagonal();
+  for (std::size_t a = 0; a < times; ++a)
+    for (std::size_t b = 0; b < times; ++b)
+      for (std::size_t c = 0; c < times; ++c)
+        for (std::size_t i = 0; i < one.count(); ++i) {
+          const Vec3& x = one.position[i];
+          state.position.push_back({x[0] + static_cast<double>(a) * edge[0],
+                                    x[1] + static_cast<double>(b) * edge[1],
+                                    x[2] + static_cast<double>(c) * edge[2]});
+          state.velocity.push_back(one.velocity[i]);
+          state.radius.push_back(one.radius[i]);
+        }
+  return state;
+}
+
+TrialPacking::TrialPacking(const Material& material, std::size_t count, const NewPacking& like)
+    : material_(material) {
+  const std::size_t wanted = std::min(count, largest_trial);
+  while (wanted > whole_trial && wanted / (times_ * times_ * times_) > base_grains) ++times_;
+  NewPacking packing = like;
+  packing.count = static_cast<std::int64_t>(std::max<std::size_t>(8, wanted / (times_ * times_ * times_)));
+  state_ = random_gas(material, packing);
+  step_ = time_step(material, *std::min_element(state_.radius.begin(), state_.radius.end()), trial_step);
+}
+
+void TrialPacking::compress_to(double nu) {
+  const double strain = std::log(nu / state_.volume_fraction()) / 3;
+  if (std::abs(strain) < 1e-4) return;
+  go(Mode::iso, {strain, strain, strain}, 4e-5);
+  go(Mode::relax, {}, 0);
+}
+
+void TrialPacking::shear() { go(Mode::d2, {-0.01, 0.01, 0}, 6e-6); }
+
+State TrialPacking::state() const { return times_ > 1 ? laid_out(state_, times_) : state_; }
+
+void TrialPacking::go(Mode mode, const StrainTensor& strain, double strain_per_step) {
+  Leg leg{};
+  leg.mode = mode;
+  leg.strain = strain;
+  const double largest = std::max({std::abs(strain[0]), std::abs(strain[1]), std::abs(strain[2])});
+  leg.duration = step_ * (mode == Mode::relax ? 1000 : std::ceil(largest / strain_per_step));
+  leg.profile = Profile::constant;
+  leg.tolerance = 1e-6;
+  Dynamics dynamics(material_, state_);
+  drive(dynamics, leg, plan_steps(leg, step_, 1));
+  state_ = dynamics.state();
+}
+
+}  // namespace grainlaw::dem

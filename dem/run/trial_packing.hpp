@@ -1,0 +1,38 @@
+// A packing like that of a scene, made in seconds: what steps and rows cost is measured in it.
+#pragma once
+
+#include <cstddef>
+
+#include "grainlaw/dem/packing/state.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
+#include "grainlaw/element/material.hpp"
+
+namespace grainlaw::dem {
+
+/// A packing in an orthorhombic box beside itself, `times` along each axis.
+State laid_out(const State& one, std::size_t times);
+
+/// A packing like the scene's, made much faster than a real one: only what its neighbourhoods cost matters.
+class TrialPacking {
+ public:
+  TrialPacking(const Material& material, std::size_t count, const NewPacking& like);
+
+  void compress_to(double nu);
+  /// Into flow, with grains that rearrange.
+  void shear();
+
+  /// Without copies beside it.
+  const State& base() const { return state_; }
+  State state() const;
+
+ private:
+  /// `strain_per_step` at the trial's step; a relaxation takes a thousand steps.
+  void go(Mode mode, const StrainTensor& strain, double strain_per_step);
+
+  Material material_;
+  std::size_t times_ = 1;
+  State state_;
+  double step_ = 0;
+};
+
+}  // namespace grainlaw::dem

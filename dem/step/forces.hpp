@@ -1,0 +1,25 @@
+// The force kernel: contact forces of all listed pairs. The one loop that the engine's speed depends on.
+#pragma once
+
+#include "grainlaw/dem/packing/cell.hpp"
+#include "grainlaw/dem/packing/grains.hpp"
+#include "grainlaw/dem/step/contact_law.hpp"
+#include "grainlaw/dem/step/pairs.hpp"
+#include "grainlaw/dem/step/shares.hpp"
+
+namespace grainlaw::dem {
+
+/// How many pairs the loops compute at a time.
+std::size_t force_lanes();
+
+/// Fills grains.force from grains.place and grains.motion (Eq. 2.1). The closing velocity of a contact is
+/// that of the true motion: fluctuation plus the affine motion of the box over the branch.
+void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains);
+/// Adds them to what grains.force holds, which advance() leaves at zero.
+void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains);
+/// The same as contact_forces for the grains of a share, to the last bit; other shares may be at work at the
+/// same time.
+void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share,
+                    Grains& grains);
+
+}  // namespace grainlaw::dem

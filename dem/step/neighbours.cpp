@@ -1,0 +1,285 @@
+#include "grainlaw/dem/step/neighbours.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "grainlaw/element/error.hpp"
+
+namespace grainlaw::dem {
+
+namespace {
+
+constexpr double rest_budget = 0.01;  // s_i of a grain at rest, in units of the mean radius
+constexpr double box_budget = 1e-3;   // 1 - e_min: the compression of the box that an inner list survives
+constexpr double outer_skin = 0.7;    // in units of the mean radius; less where the box is narrow
+constexpr double least_skin = 0.02;   // the narrowest outer skin worth listing
+constexpr std::uint32_t most_told_apart = 31;  // numbers of partners
+constexpr double flight_share = 0.125;         // s_i at most this share of the outer skin, but of a flyer
+constexpr std::size_t most_flyers = 16;
+constexpr std::size_t run_length =
+    64;  // of grains that are enclosed together, where a flyer looks for partners
+constexpr double longest_flight = 1;  // s_i of a flyer, in units of the mean radius
+
+/// |x - E X|^2
+double strayed(const Quad& x, const Quad& reference, const Mat3& deformation) {
+  const Vec3 carried = deformation * Vec3{reference.x, reference.y, reference.z};
+  const double a = x.x - carried[0], b = x.y - carried[1], c = x.z - carried[2];
+  return a * a + b * b + c * c;
+}
+
+/// The box around the centres of some spheres, and the largest radius of them.
+struct Enclosure {
+  double reach = 0;
+  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+
+  void enclose(const Quad& b) {  // a comparison drops what is not a number
+    reach = std::max(reach, b.w);
+    low = {std::min(low[0], b.x), std::min(low[1], b.y), std::min(low[2], b.z)};
+    high = {std::max(high[0], b.x), std::max(high[1], b.y), std::max(high[2], b.z)};
+  }
+  bool may_be_near(const Quad& a) const {
+    const Vec3 at{a.x, a.y, a.z};
+    bool inside = true;
+    for (std::size_t c = 0; c < 3; ++c)
+      inside = inside && at[c] > low[c] - reach - a.w && at[c] < high[c] + reach + a.w;
+    return inside;
+  }
+};
+
+/// Whether the spheres of radius w about a and the image of b meet.
+bool near(const Quad& a, const Quad& b, const Quad& shift) {
+  const double x = a.x - b.x - shift.x, y = a.y - b.y - shift.y, z = a.z - b.z - shift.z, reach = a.w + b.w;
+  return x * x + y * y + z * z < reach * reach;
+}
+
+}  // namespace
+
+bool Neighbours::outdated(const Grains& grains, const Cell& cell) const {
+  if (inner_reference_.size() != grains.count()) return true;
+  const Mat3 deformation = cell.deformation_from(inner_cell_.edges());
+  double excess = -1;
+  for (std::size_t i = 0; i < grains.count(); ++i)
+    excess =
+        std::max(excess, strayed(grains.place[i], inner_reference_[i], deformation) - inner_reference_[i].w);
+  return outdated(cell, excess);
+}
+
+bool Neighbours::outdated(const Cell& cell, double excess) const {
+  return excess > 0 || least_stretch(cell.deformation_from(inner_cell_.edges())) < 1 - box_budget;
+}
+
+void Neighbours::update(Grains& grains, Cell& cell, double lookahead) {
+  make_budgets(grains, lookahead);
+  if (!outer_covers(grains, cell)) {
+    sort_and_list(grains, cell);
+    make_budgets(grains, lookahead);    // in the new order, and within the new skin
+    if (!outer_covers(grains, cell)) {  // too narrow a box for flyers
+      for (const std::uint32_t i : flyers_) budget_[i] = flight_share * outer_skin_;
+      flyers_.clear();
+    }
+  }
+  filter(grains, cell);
+  ++updates_;
+}
+
+void Neighbours::make_budgets(const Grains& grains, double lookahead) {
+  const double least = std::min(rest_budget * unit_, 0.25 * flight_share * outer_skin_);
+  const double most = flight_share * outer_skin_;
+  budget_.resize(grains.count());
+  flyers_.clear();
+  bool few = true;
+  for (std::uint32_t i = 0; i < grains.count(); ++i) {
+    const Quad& v = grains.motion[i];
+    const double flight = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * lookahead;
+    budget_[i] = std::min(least + flight, most);
+    if (flight <= most || !few) continue;
+    few = flyers_.size() < most_flyers;
+    if (few) flyers_.push_back(i);
+  }
+  if (!few) flyers_.clear();
+  for (const std::uint32_t i : flyers_) {
+    const Quad& v = grains.motion[i];
+    budget_[i] =
+        least + std::min(std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * lookahead, longest_flight * unit_);
+  }
+}
+
+/// Whether every pair that the inner list must hold is in the outer one: for all i, with e the shrink since
+/// the outer list was made, |w_i| + s_i/e_min + r_i (1/e_min - e) <= e skin/2. A few grains for which that
+/// fails join the flyers, whose pairs are not looked for there.
+bool Neighbours::outer_covers(const Grains& grains, const Cell& cell) {
+  if (outer_reference_.size() != grains.count()) return false;
+  const Mat3 deformation = cell.deformation_from(outer_cell_.edges());
+  const double e = least_stretch(deformation), inflate = 1 / (1 - box_budget);
+  auto flyer = flyers_.begin();
+  std::vector<std::uint32_t> flyers;
+  // Flyers and their partners must meet through one of the 27 images.
+  const double widest = 2 * largest_radius_ + 2 * outer_skin_,
+               allowed = 0.5 * (e * cell.narrowest() - widest);
+  for (std::uint32_t i = 0; i < grains.count(); ++i) {
+    const bool flies = flyer != flyers_.end() && *flyer == i;
+    if (flies) ++flyer;
+    const double room = 0.5 * e * outer_skin_ - budget_[i] * inflate - grains.place[i].w * (inflate - e);
+    const double squared = strayed(grains.place[i], outer_reference_[i], deformation);
+    if (!flies && room >= 0 && squared <= room * room) continue;
+    if (flyers.size() == most_flyers || !(std::sqrt(squared) + 2 * budget_[i] <= allowed)) return false;
+    flyers.push_back(i);
+  }
+  flyers_.swap(flyers);
+  return true;
+}
+
+void Neighbours::sort_and_list(Grains& grains, Cell& cell) {
+  cell.reduce();
+  const double narrowest = cell.narrowest(), widest_grain = 2 * largest_radius_;
+  outer_skin_ = std::min(narrowest - widest_grain, outer_skin * unit_);  // in this order not a number stays
+  if (!(outer_skin_ >= least_skin * unit_))
+    throw Error("the box is " + to_text(narrowest) +
+                " mm wide, too narrow for its largest grain of diameter " + to_text(widest_grain) +
+                " mm: it must be wider than " + to_text(widest_grain + least_skin * unit_) +
+                " mm, or a grain would touch its own image; take more grains or less strain");
+  for (Quad& p : grains.place) {
+    const Vec3 x = cell.wrap({p.x, p.y, p.z});
+    p = {x[0], x[1], x[2], p.w};
+  }
+  const LinkedCells cells(grains.place, cell, outer_range());
+  grains.reorder(cells.order());
+  cells.list_pairs(grains.place, cell, outer_skin_, outer_);
+  outer_reference_ = grains.place;
+  outer_cell_ = cell;
+  ++sorts_;
+}
+
+/// Both lists follow from where the grains were when they were made: LinkedCells leaves sorted grains where
+/// they are, and the filter knows of the grains only their places and budgets.
+void Neighbours::rebuild(const Grains& grains) {
+  Grains then;
+  then.place = outer_reference_;
+  LinkedCells(then.place, outer_cell_, outer_range())
+      .list_pairs(then.place, outer_cell_, outer_skin_, outer_);
+  then.place = inner_reference_;
+  for (std::size_t i = 0; i < then.count(); ++i) then.place[i].w = grains.place[i].w;
+  filter(then, inner_cell_);
+}
+
+void Neighbours::filter(const Grains& grains, const Cell& cell) {
+  const std::size_t count = grains.count();
+  inner_reference_.resize(count);
+  const double inflate = 1 / (1 - box_budget);
+  // Positions with the grain's reach (r_i + s_i)/e_min, so that one line tells all about a grain.
+  for (std::size_t i = 0; i < count; ++i) {
+    const Quad& p = grains.place[i];
+    inner_reference_[i] = {p.x, p.y, p.z, (p.w + budget_[i]) * inflate};
+  }
+  inner_cell_ = cell;
+  Quads flying;
+  for (const std::uint32_t i : flyers_) {
+    flying.push_back(inner_reference_[i]);
+    inner_reference_[i].x = std::numeric_limits<double>::quiet_NaN();  // near to none
+  }
+  const std::array<Quad, 27> shifts = cell.shifts();
+  near_begin_.resize(count + 1);
+  near_.resize(outer_.partner.size() + 1);
+  std::uint32_t n = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Quad a = inner_reference_[i];
+    near_begin_[i] = n;
+    for (std::uint32_t p = outer_.begin[i]; p < outer_.begin[i + 1]; ++p) {
+      const std::uint32_t j = outer_.partner[p];
+      near_[n] = j;  // kept or overwritten by the next one: no branch to mispredict
+      n += near(a, inner_reference_[j], {}) ? 1u : 0u;
+    }
+  }
+  near_begin_[count] = n;
+  group();
+  CrossingPairs& crossing = inner_.crossing;
+  crossing.pairs.clear();
+  for (const auto& [i, j, image] : outer_.crossing)
+    if (near(inner_reference_[i], inner_reference_[j], shifts[image]))
+      crossing.pairs.push_back({i, j, image});
+  list_flyers(flying, shifts);
+  crossing.fill_up();
+  for (std::size_t i = 0; i < count; ++i) inner_reference_[i].w = budget_[i] * budget_[i];
+}
+
+/// The pairs of the grains that fly, looked for among all grains and through all images in which one of them
+/// may lie near: in those runs of grains, as they are sorted in space, whose box is near enough.
+void Neighbours::list_flyers(const Quads& flying, const std::array<Quad, 27>& shifts) {
+  if (flying.empty()) return;
+  std::vector<Enclosure> runs((inner_reference_.size() + run_length - 1) / run_length);
+  Enclosure all;
+  const auto enclose = [&](std::size_t i) {
+    runs[i / run_length].enclose(inner_reference_[i]);
+    all.enclose(inner_reference_[i]);
+  };
+  for (std::size_t i = 0; i < inner_reference_.size(); ++i)
+    enclose(i);  // but flyers, which have no place yet
+  for (std::size_t k = 0; k < flying.size(); ++k) {
+    const Quad& a = flying[k];
+    for (std::uint32_t image = 0; image < shifts.size(); ++image) {
+      const Quad& shift = shifts[image];
+      const Quad at{a.x - shift.x, a.y - shift.y, a.z - shift.z, a.w};
+      if (!all.may_be_near(at)) continue;
+      for (std::size_t run = 0; run < runs.size(); ++run) {
+        if (!runs[run].may_be_near(at)) continue;
+        const std::size_t last = std::min((run + 1) * run_length, inner_reference_.size());
+        for (std::size_t j = run * run_length; j < last; ++j)
+          if (near(a, inner_reference_[j], shift))
+            inner_.crossing.pairs.push_back({flyers_[k], static_cast<std::uint32_t>(j), image});
+      }
+    }
+    inner_reference_[flyers_[k]] = a;  // so that the next flyers meet it
+    enclose(flyers_[k]);
+  }
+}
+
+/// Groups grains that lie side by side and have about as many partners.
+void Neighbours::group() {
+  const auto count = static_cast<std::uint32_t>(near_begin_.size() - 1);
+  GroupedPairs& within = inner_.within;
+  within.groups.clear();
+  within.partner.clear();
+  within.reach = outer_.reach;
+  within.count = near_begin_[count];
+  constexpr std::uint32_t block = GroupedPairs::block;
+  std::array<std::uint32_t, block> sorted{};
+  const auto partners_of = [this](std::uint32_t i) { return near_begin_[i + 1] - near_begin_[i]; };
+  for (std::uint32_t first = 0; first < count; first += block) {
+    const std::uint32_t last = std::min(first + block, count);
+    // By the number of partners, most first; those without any are left out.
+    std::array<std::uint32_t, most_told_apart + 2> begin{};
+    const auto rank = [&](std::uint32_t i) {
+      return most_told_apart - std::min(partners_of(i), most_told_apart);
+    };
+    for (std::uint32_t i = first; i < last; ++i) ++begin[rank(i) + 1];
+    for (std::uint32_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
+    const std::uint32_t with_any = begin[most_told_apart];
+    for (std::uint32_t i = first; i < last; ++i) sorted[begin[rank(i)]++] = i;
+    for (std::uint32_t k = 0; k < with_any; k += GroupedPairs::width)
+      add_group(&sorted[k], std::min<std::uint32_t>(GroupedPairs::width, with_any - k));
+  }
+}
+
+void Neighbours::add_group(const std::uint32_t* grain, std::uint32_t grains) {
+  GroupedPairs& within = inner_.within;
+  GroupedPairs::Group group{};
+  std::uint32_t most = 0;
+  for (std::uint32_t k = 0; k < GroupedPairs::width; ++k) {
+    group.grain[k] = grain[k < grains ? k : 0];
+    if (k < grains) most = std::max(most, near_begin_[grain[k] + 1] - near_begin_[grain[k]]);
+  }
+  group.first = static_cast<std::uint32_t>(within.partner.size());
+  group.last = group.first + most * static_cast<std::uint32_t>(GroupedPairs::width);
+  within.partner.resize(group.last);
+  for (std::uint32_t k = 0; k < GroupedPairs::width; ++k) {
+    const std::uint32_t i = group.grain[k], begin = near_begin_[i];
+    const std::uint32_t own = k < grains ? near_begin_[i + 1] - begin : 0;
+    std::uint32_t* to = &within.partner[group.first + k];
+    for (std::uint32_t n = 0; n < most; ++n, to += GroupedPairs::width) *to = n < own ? near_[begin + n] : i;
+  }
+  within.groups.push_back(group);
+}
+
+}  // namespace grainlaw::dem
