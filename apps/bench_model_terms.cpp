@@ -36,10 +36,10 @@ ParameterSet completed(ParameterSet set) {
     fill(m.F_v, 6.5);
   }
   if (set.memory) {
-    fill(set.memory->eps_r, 0.2);
+    fill(set.memory->eps_r, 0.145);
     fill(set.memory->hold, 0.4);
     fill(set.memory->pack_rate, 2);
-    fill(set.memory->phi_pack, 0.667);
+    fill(set.memory->phi_pack, 0.668);
   }
   if (!set.volumetric) {
     set.volumetric.emplace();

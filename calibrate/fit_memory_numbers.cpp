@@ -22,11 +22,11 @@ struct Number {
 };
 constexpr Number numbers[] = {{"memory.alpha_P", &model::MemoryLaws::alpha_P, 1.7, Number::loading},
                               {"memory.eps0_P", &model::MemoryLaws::eps0_P, 0.0785, Number::loading},
-                              {"memory.eps0_R_P", &model::MemoryLaws::eps0_R_P, 0.17, Number::reversal},
-                              {"memory.eps_r", &model::MemoryLaws::eps_r, 0.2, Number::reversal},
+                              {"memory.eps0_R_P", &model::MemoryLaws::eps0_R_P, 0.16, Number::reversal},
+                              {"memory.eps_r", &model::MemoryLaws::eps_r, 0.145, Number::reversal},
                               {"memory.hold", &model::MemoryLaws::hold, 0.3, Number::reversal},
                               {"memory.pack_rate", &model::MemoryLaws::pack_rate, 2, Number::nothing},
-                              {"memory.phi_pack", &model::MemoryLaws::phi_pack, 0.667, Number::nothing}};
+                              {"memory.phi_pack", &model::MemoryLaws::phi_pack, 0.668, Number::nothing}};
 
 model::Parameter assumed(double value, const std::string& why) {
   model::Parameter parameter;

@@ -50,7 +50,7 @@ struct BasicMemoryNumbers {
   P alpha = 1;                   ///< exponent of Eq. 5.3
   P eps0 = 1;                    ///< strain over which a first loading is remembered (Eq. 5.3)
   P eps0_R = 1;                  ///< the same after a reversal (Eq. 5.13)
-  P eps_r = 1;                   ///< strain over which a reversal empties the memory of the direction before
+  P eps_r = 1;                   ///< strain of a reversal that empties the memory of steady shear
   P hold = 0;                    ///< part of the fabric's rate that a full reversal takes
   P pack_rate = 0;               ///< of shear to and fro
   P phi_pack = 0;                ///< the density it packs to

@@ -136,7 +136,7 @@ const std::vector<Symbol> memory{
     {"memory.eps0_R_P", "<var>ε</var><sub>0,R,P</sub>", "{/:Italic ε}_{0,R,P}", "–",
      "The same after a reversal (Eq. 5.13), likewise."},
     {"memory.eps_r", "<var>ε</var><sub>r</sub>", "{/:Italic ε}_r", "–",
-     "Strain over which a reversal empties the memory of the direction before (form memory)."},
+     "Strain of a reversal that empties the memory of steady shear (form memory)."},
     {"memory.hold", "<var>h</var>", "{/:Italic h}", "–",
      "Part of the fabric's rate that a full reversal takes (form memory)."},
     {"memory.pack_rate", "<var>k</var><sub>p</sub>", "{/:Italic k}_p", "–",

@@ -107,8 +107,7 @@ struct BasicMemory {
     // phi_s, and once more with slopes.
     const auto next = [&](const R& ratio) -> R {
       const R at = laws.pressure.nu_c * ratio;
-      return ratio - (pressure(laws.pressure, at) - wanted) /
-                         (pressure_slope(laws.pressure, at) * laws.pressure.nu_c);
+      return ratio - (pressure(laws.pressure, at) - wanted) * ratio / pressure_slope(laws.pressure, at);
     };
     double ratio = value(nu) / value(phi_s);
     for (int i = 0; i < 30; ++i) {
@@ -244,11 +243,12 @@ struct BasicMemory {
     if (!shears) return true;
     dydt[1] = dydt[1] + approach_rate(q * c.F_max, F, c.beta_F * free * (size_e / direction.S_F_I));
     const std::size_t along = q > 0 ? 2 : 3, against = 5 - along;
-    const auto per_eps0 = 1 / laws.memory.eps0, per_eps0_R = 1 / laws.memory.eps0_R;
-    dydt[along] = dydt[along] + filling_rate(y[along], laws.memory.alpha) *
-                                    ((per_eps0 + opposed * (per_eps0_R - per_eps0)) * size_e);
+    const auto per_strain = [&](const P& reversed) {
+      return ((1 - opposed) / laws.memory.eps0 + opposed / reversed) * size_e;
+    };
+    dydt[along] = dydt[along] + filling_rate(y[along], laws.memory.alpha) * per_strain(laws.memory.eps0_R);
     dydt[5] = (c.phi_ss - y[5]) * (4 * size_e / (laws.memory.eps0 * (y[along] + 0.05)));
-    const R emptied = emptying_rate(y[against]) * (size_e / laws.memory.eps_r);
+    const R emptied = emptying_rate(y[against]) * per_strain(laws.memory.eps_r);
     dydt[against] = dydt[against] - emptied;
     if (y[against] > y[4]) dydt[4] = laws.memory.pack_rate * (y[against] - y[4]) * emptied;
     return true;
@@ -259,7 +259,7 @@ struct BasicMemory {
                     const BasicDirection<S>& direction, const S* y) const {
     const double e = std::abs(value(stretch.eps_dev));
     if (e == 0) return 0;
-    double rate = std::max({value(c.beta_F) / value(direction.S_F_I), 20 / value(laws.memory.eps_r),
+    double rate = std::max({value(c.beta_F) / value(direction.S_F_I), 30 / value(laws.memory.eps_r),
                             value(laws.memory.alpha) / value(laws.memory.eps0)});
     if (direction.jammed) {
       using R = Meet<C, S>;
@@ -361,7 +361,9 @@ struct BasicMemory {
                    deficit;
     if (rate <= 0) return 0.0;
     const R a = remembered(y[2], laws.memory.alpha), b = remembered(y[3], laws.memory.alpha);
-    return rate * m / ((a * (1 - b) + b * (1 - a)) * laws.memory.alpha);
+    R share = a * (1 - b) + b * (1 - a);
+    if (share < 1e-3 * m) share = 1e-3 * m;  // of two full memories neither takes any from m
+    return rate * m / (share * laws.memory.alpha);
   }
 
   /// dP*/dt where the stretch begins.

@@ -1,10 +1,13 @@
-// Cycles that no fit of eps_c has read: D2 between +-0.1 near jamming and between +-0.4 of a third packing,
-// and UNI through jamming and back, the mixed test of memory. Errors of the forms with the numbers of
-// data/grains/w-3.json.
+// Cycles of D2 between +-0.1 near jamming and between +-0.4 of a third packing, and of UNI through jamming
+// and back. Errors of the forms with the numbers of data/grains/w-3.json, whose exponent and strain of
+// Eq. 5.3 are of first loadings; what a reversal does (eps0_R_P, eps_r, pack_rate, phi_pack) is of D2 cycles,
+// these included.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grainlaw/calibrate/predict_records.hpp"
@@ -20,7 +23,8 @@ struct Errors {
   double P, sigma_dev, F_dev;
 };
 
-Errors errors_of(const std::string& test, const std::string& form, bool holds = true) {
+Errors errors_of(const std::string& test, const std::string& form,
+                 const std::function<void(model::MemoryLaws&)>& change = {}) {
   const std::string dir = std::string(GRAINLAW_DATA_DIR "/records/") + test;
   const auto scene = dem::Scene::read(Reader(load_json(dir + "/scene.json"), dir), dir);
   const Record record = Record::read_csv(dir + "/record.csv",
@@ -28,7 +32,7 @@ Errors errors_of(const std::string& test, const std::string& form, bool holds = 
   Path path = scene.path;
   path.start.nu = record["nu"].front();
   auto parameters = model::ParameterSet::load(GRAINLAW_DATA_DIR "/grains/w-3.json");
-  if (!holds) parameters.memory->hold.reset();
+  if (change) change(*parameters.memory);
   const auto samples = model::samples_of(record, path, *path.start.nu);
   const auto predicted = form == model::minimal_name
                              ? model::predict_minimal(parameters, path, samples)
@@ -40,21 +44,37 @@ Errors errors_of(const std::string& test, const std::string& form, bool holds = 
   return {error("P"), error("sigma_dev"), error("F_dev")};
 }
 
-/// On a test, with the memory holding the fabric (held) and not (free).
-void expect_held_is_best(const std::string& test, double gain_of_P) {
-  SCOPED_TRACE(test);
-  const Errors coupled = errors_of(test, "coupled"), free = errors_of(test, "memory", false),
-               held = errors_of(test, "memory");
-  EXPECT_LT(held.P, gain_of_P * coupled.P);
-  EXPECT_LT(held.P, 0.88 * free.P);
-  EXPECT_LT(held.F_dev, 0.78 * free.F_dev);
-  EXPECT_NEAR(free.F_dev, coupled.F_dev, 1e-6);  // both are Eq. 4.16
-  EXPECT_LT(held.sigma_dev, coupled.sigma_dev);
+/// Three cycles of +-0.1, along which P of grains sinks: a reversal gives back what shear took, denser.
+TEST(SmallCycles, MemoryFollowsThePressure) {
+  for (const auto& [nu, gain] : {std::pair{"0.685", 5.0}, {"0.711", 2.1}}) {
+    const std::string test = std::string("small-cycles/records/d2-0.1-") + nu + "-s4";
+    SCOPED_TRACE(test);
+    const Errors coupled = errors_of(test, "coupled"), memory = errors_of(test, "memory");
+    EXPECT_LT(memory.P, coupled.P / gain);
+    EXPECT_LT(memory.P, 0.018);
+    EXPECT_LT(memory.sigma_dev, coupled.sigma_dev);
+  }
 }
 
-TEST(SmallCycles, WhatIsRememberedHoldsTheFabric) {
-  expect_held_is_best("small-cycles/records/d2-0.1-0.685-s4", 0.77);
-  expect_held_is_best("small-cycles/records/d2-0.1-0.711-s4", 0.95);
+/// Without the packed part P of the law does not sink as that of grains does.
+TEST(SmallCycles, ShearToAndFroPacks) {
+  for (const std::string nu : {"0.685", "0.711"}) {
+    const std::string test = "small-cycles/records/d2-0.1-" + nu + "-s4";
+    EXPECT_LT(
+        errors_of(test, "memory").P,
+        0.85 * errors_of(test, "memory", [](model::MemoryLaws& memory) { memory.pack_rate->value = 0; }).P)
+        << nu;
+  }
+}
+
+/// A reversal slows the fabric by more than Eq. 4.16 has it.
+TEST(SmallCycles, AReversalHoldsTheFabric) {
+  for (const std::string nu : {"0.685", "0.711"}) {
+    const std::string test = "small-cycles/records/d2-0.1-" + nu + "-s4";
+    const Errors free = errors_of(test, "memory", [](model::MemoryLaws& memory) { memory.hold.reset(); });
+    EXPECT_LT(errors_of(test, "memory").F_dev, 0.78 * free.F_dev) << nu;
+    EXPECT_NEAR(free.F_dev, errors_of(test, "coupled").F_dev, 1e-6) << nu;  // both are Eq. 4.16
+  }
 }
 
 TEST(SmallCycles, MemoryPassesTinyOnes) {
@@ -68,8 +88,8 @@ TEST(UniCycles, MemoryHoldsThePressure) {
     SCOPED_TRACE(test);
     const Errors coupled = errors_of(test, "coupled"), memory = errors_of(test, "memory"),
                  minimal = errors_of(test, model::minimal_name);
-    EXPECT_LT(memory.P, 0.02);
-    EXPECT_GT(coupled.P, 2 * memory.P);
+    EXPECT_LT(memory.P, 0.0125);
+    EXPECT_GT(coupled.P, 3 * memory.P);
     EXPECT_GT(minimal.P, 2 * memory.P);
   }
 }
@@ -93,21 +113,21 @@ double error_of_the_others(std::size_t packing) {
   return relative_distance(mean, pressure_of(packings()[packing]));
 }
 
-/// At this density P on the cycle is a packing's own: two packings foretell the third no better than the law
+/// At this density P on the cycle is a packing's own: two packings foretell the third less well than the law
 /// does, and neither is five times better than the coupled form.
-TEST(ThirdCycle, TwoPackingsSayNoMoreOfAThirdThanMemory) {
+TEST(ThirdCycle, TwoPackingsSayLessOfAThirdThanMemory) {
   double others = 0, memory = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     SCOPED_TRACE(packings()[i]);
     const double coupled = errors_of(packings()[i], "coupled").P;
     EXPECT_GT(coupled / error_of_the_others(i), 1.5);
     EXPECT_LT(coupled / error_of_the_others(i), 2.2);
-    EXPECT_LT(errors_of(packings()[i], "memory").P, 1.05 * error_of_the_others(i));
+    EXPECT_LT(errors_of(packings()[i], "memory").P, 0.9 * error_of_the_others(i));
     others += error_of_the_others(i) / 3;
     memory += errors_of(packings()[i], "memory").P / 3;
   }
   EXPECT_NEAR(others, 0.0058, 1e-4);
-  EXPECT_NEAR(memory, 0.0056, 1e-4);
+  EXPECT_NEAR(memory, 0.0046, 1e-4);
 }
 
 }  // namespace

@@ -13,12 +13,17 @@ using testing::HasSubstr;
 TEST(FitMemoryNumbers, AreAssumedWithTheReasonWhereNoTestTells) {
   auto set = model::ParameterSet::load(GRAINLAW_DATA_DIR "/thesis/parameters.json");
   add_memory_numbers(testing::TempDir(), {}, set);
-  for (const auto* number : {&set.memory->eps_c, &set.memory->hold}) {
+  const auto& memory = *set.memory;
+  for (const auto* number : {&memory.alpha_P, &memory.eps0_P, &memory.eps0_R_P, &memory.eps_r, &memory.hold,
+                             &memory.pack_rate, &memory.phi_pack}) {
     ASSERT_TRUE(number->has_value());
     EXPECT_EQ((*number)->source, "assumed");
     EXPECT_FALSE((*number)->stderr_);
   }
-  EXPECT_THAT(set.memory->eps_c->note, HasSubstr("no D2 test tells ("));
+  EXPECT_THAT(memory.alpha_P->note, HasSubstr("no D2 test tells ("));
+  EXPECT_THAT(memory.eps0_P->note, HasSubstr("no D2 test tells ("));
+  EXPECT_THAT(memory.eps_r->note, HasSubstr("no D2 test is reversed"));
+  EXPECT_THAT(memory.phi_pack->note, HasSubstr("no test is asked for it"));
   EXPECT_THAT(set.memory->hold->note, HasSubstr("no D2 test is reversed"));
 }
 
@@ -26,7 +31,8 @@ TEST(FitMemoryNumbers, AreLeftOutWhereTheFormLacksItsLaws) {
   auto set = model::ParameterSet::load(GRAINLAW_DATA_DIR "/thesis/parameters.json");
   set.moduli.reset();
   add_memory_numbers(testing::TempDir(), {}, set);
-  EXPECT_FALSE(set.memory->eps_c);
+  EXPECT_FALSE(set.memory->alpha_P);
+  EXPECT_FALSE(set.memory->eps_r);
   EXPECT_FALSE(set.memory->hold);
 }
 
