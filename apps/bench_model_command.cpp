@@ -42,8 +42,9 @@ ModelBench bench_of(const Arguments& arguments) {
   return bench;
 }
 
-/// Of a state: the history twice, m, and whether the stretch began jammed.
-constexpr std::size_t memory_bytes = 2 * sizeof(model::History) + 2 * sizeof(double);
+/// Of a state: the history twice, what shear has left, and whether the stretch began jammed.
+constexpr std::size_t memory_bytes =
+    2 * sizeof(model::History) + sizeof(model::ShearHistory) + sizeof(double);
 
 std::string spoken(const ModelTiming& t) {
   const std::string where = t.kind == "batch" ? fmt::format("{} points, {} thread{}, volume {}", t.points,

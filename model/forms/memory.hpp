@@ -103,17 +103,18 @@ struct BasicMemory {
     const P& phi_s = laws.shear_pressure.nu_c;
     if (nu <= phi_s) return phi_s;
     const R wanted = pressure(laws.shear_pressure, nu);
-    // Eq. 2.14 at phi_J depends on nu/phi_J alone: Newton's method in ratio = nu/phi_J, begun where phi_J is
-    // phi_s, and once more with slopes.
+    // Eq. 2.14 at phi_J depends on nu/phi_J alone: Newton's method in ratio = nu/phi_J, to half the digits,
+    // and once more with slopes.
     const auto next = [&](const R& ratio) -> R {
       const R at = laws.pressure.nu_c * ratio;
       return ratio - (pressure(laws.pressure, at) - wanted) * ratio / pressure_slope(laws.pressure, at);
     };
-    double ratio = value(nu) / value(phi_s);
+    double ratio =
+        1 + (value(nu) / value(phi_s) - 1) * (value(laws.shear_pressure.p0) / value(laws.pressure.p0));
     for (int i = 0; i < 30; ++i) {
       const double before = std::exchange(ratio, value(next(R(ratio))));
       if (!(ratio > 1)) ratio = 1 + (before - 1) / 8;  // jammed it is
-      if (std::abs(ratio - before) < 1e-15 * before) break;
+      if (std::abs(ratio - before) < 1e-8) break;
     }
     return nu / next(R(ratio));
   }
@@ -259,8 +260,10 @@ struct BasicMemory {
                     const BasicDirection<S>& direction, const S* y) const {
     const double e = std::abs(value(stretch.eps_dev));
     if (e == 0) return 0;
-    double rate = std::max({value(c.beta_F) / value(direction.S_F_I), 30 / value(laws.memory.eps_r),
-                            value(laws.memory.alpha) / value(laws.memory.eps0)});
+    const double emptying = value(y[stretch.q() > 0 ? 3 : 2]);
+    double rate = std::max(value(c.beta_F) / value(direction.S_F_I),
+                           value(laws.memory.alpha) / value(laws.memory.eps0));
+    if (emptying > 0) rate = std::max(rate, emptying_rate(emptying) / (emptying * value(laws.memory.eps_r)));
     if (direction.jammed) {
       using R = Meet<C, S>;
       const R phi_J = jamming_density_at(c, y);
@@ -355,7 +358,7 @@ struct BasicMemory {
                         const Y* y) const {
     using std::abs;
     const R deficit = phi_H - phi_J, phi_max = c.phi_max;
-    if (value(abs(deficit)) < 1e-10) return 0.0;
+    if (value(abs(deficit)) < 1e-10 || !(m > 0)) return 0.0;
     const R rate = (growth_by_compression(laws.memory.over, phi_J, R(c.nu), phi_max) -
                     growth_by_compression(laws.memory.over, phi_H, R(c.nu), phi_max)) /
                    deficit;
