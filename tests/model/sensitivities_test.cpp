@@ -296,7 +296,9 @@ TEST(Sensitivities, AFailureIsAStatus) {
 
 TEST(Sensitivities, SwitchedOffCostNothing) {
   // A state without them is the numbers of its own alone, and the plain walk knows of none.
-  static_assert(sizeof(State) == 8 * sizeof(double) + 8 + sizeof(Direction) + sizeof(History));
+  static_assert(sizeof(State) ==
+                7 * sizeof(double) + 8 + sizeof(Direction) + sizeof(History) + sizeof(ShearHistory));
+  static_assert(sizeof(ShearHistory) == 4 * sizeof(double));
   static_assert(sizeof(Direction) == 6 * sizeof(double) + 8 + sizeof(History));
   const Path path = path_of(R"({"start": {"nu": 0.711}, "segments": [{"mode": "d2", "amount": 0.1}]})");
   EXPECT_EQ(predict(thesis(), path).record.columns(), prediction_columns());
