@@ -107,8 +107,7 @@ struct BasicMemory {
     // phi_s, and once more with slopes.
     const auto next = [&](const R& ratio) -> R {
       const R at = laws.pressure.nu_c * ratio;
-      return ratio - (pressure(laws.pressure, at) - wanted) /
-                         (pressure_slope(laws.pressure, at) * laws.pressure.nu_c);
+      return ratio - (pressure(laws.pressure, at) - wanted) * ratio / pressure_slope(laws.pressure, at);
     };
     double ratio = value(nu) / value(phi_s);
     for (int i = 0; i < 30; ++i) {
@@ -361,7 +360,9 @@ struct BasicMemory {
                    deficit;
     if (rate <= 0) return 0.0;
     const R a = remembered(y[2], laws.memory.alpha), b = remembered(y[3], laws.memory.alpha);
-    return rate * m / ((a * (1 - b) + b * (1 - a)) * laws.memory.alpha);
+    R share = a * (1 - b) + b * (1 - a);
+    if (share < 1e-3 * m) share = 1e-3 * m;  // of two full memories neither takes any from m
+    return rate * m / (share * laws.memory.alpha);
   }
 
   /// dP*/dt where the stretch begins.

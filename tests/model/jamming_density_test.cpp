@@ -106,29 +106,29 @@ TEST(JammingDensity, GrowthPassesWithoutAJump) {
 
 TEST(JammingDensity, DerivativesOfGrowth) {
   using D = Dual<1>;
-  const double phi = jamming_density_after(memory, 0.73, 1);
+  const double phi = jamming_density_after(measured, 0.73, 1);
   for (const double nu : {0.68, 0.725, 0.76}) {  // within a cycle, in between, beyond
     SCOPED_TRACE(nu);
     if (nu != 0.76)
-      expect_v_shape([&](double x) { return growth_by_compression(memory, x, nu, 0.73); }, phi,
-                     growth_by_compression(memory, D(phi, 0), D(nu), D(0.73)).slope[0], 1e-3);
+      expect_v_shape([&](double x) { return growth_by_compression(measured, x, nu, 0.73); }, phi,
+                     growth_by_compression(measured, D(phi, 0), D(nu), D(0.73)).slope[0], 0.02);
     if (nu != 0.68)
-      expect_v_shape([&](double x) { return growth_by_compression(memory, phi, x, 0.73); }, nu,
-                     growth_by_compression(memory, D(phi), D(nu, 0), D(0.73)).slope[0], 1e-3);
+      expect_v_shape([&](double x) { return growth_by_compression(measured, phi, x, 0.73); }, nu,
+                     growth_by_compression(measured, D(phi), D(nu, 0), D(0.73)).slope[0], 0.02);
     for (double OverCompression::*number :
          {&OverCompression::mu, &OverCompression::beta, &OverCompression::alpha_phi}) {
       const auto moved = [&](double x) {
-        OverCompression o = memory;
+        OverCompression o = measured;
         o.*number = x;
         return growth_by_compression(o, phi, nu, 0.73);
       };
-      BasicOverCompression<D> o{memory.phi_SJ, memory.mu, memory.beta, memory.alpha_max, memory.alpha_phi};
+      BasicOverCompression<D> o{measured.phi_SJ, measured.mu, measured.beta, measured.alpha_max,
+                                measured.alpha_phi};
       if (number == &OverCompression::mu) o.mu.slope[0] = 1;
       if (number == &OverCompression::beta) o.beta.slope[0] = 1;
       if (number == &OverCompression::alpha_phi) o.alpha_phi.slope[0] = 1;
-      if (nu == 0.76 && number == &OverCompression::beta) continue;  // 1/mu = 1 to any power
-      expect_v_shape(moved, memory.*number, growth_by_compression(o, D(phi), D(nu), D(0.73)).slope[0],
-                     1e-2 * memory.*number);
+      expect_v_shape(moved, measured.*number, growth_by_compression(o, D(phi), D(nu), D(0.73)).slope[0],
+                     1e-2 * measured.*number);
     }
   }
 }

@@ -132,7 +132,7 @@ TEST(MemoryCompression, GivesBackWhatShearHasTaken) {
   for (const double nu : {0.66, 0.68, 0.70}) {
     const std::vector<double> phi_J = given_back(nu, 1);
     EXPECT_NEAR(phi_J.front(), form().steady_density(nu), 1e-9);
-    EXPECT_NEAR(phi_J.back(), first, 0.05 * (first - phi_J.front())) << nu;
+    EXPECT_GT(phi_J.back(), (phi_J.front() + first) / 2) << nu;  // most of it
     EXPECT_LE(phi_J.back(), first);
   }
 }
@@ -148,16 +148,19 @@ TEST(MemoryCompression, GivesBackWithoutAJump) {
   };
   const std::vector<double> coarse = given_back(0.68, 100), fine = given_back(0.68, 400);
   EXPECT_NEAR(most(coarse) / most(fine), 4, 0.2);
-  EXPECT_NEAR(coarse.back(), fine.back(), 1e-8) << "and it may be cut into pieces";
+  EXPECT_NEAR(coarse.back(), fine.back(), 1e-7) << "and it may be cut into pieces";
 }
 
 TEST(MemoryCompression, GrowsByEquations5_1And5_5WhateverHasLoweredIt) {
-  // d phi_J/d ln nu of what shear has lowered is that of a packing that jams there.
+  // d phi_J/d ln nu of what shear has lowered is that of a packing that jams there, less m times that of
+  // phi_H: m falls by the difference of both rates.
   for (const double nu : {0.67, 0.70, 0.75}) {
     State state = isotropic(nu);
     ASSERT_FALSE(walk_by(WalkedBy::bdf, state, 0, 0.2, {1e-11, 1e-14}).failed());
-    const double h = 1e-5, before = state.phi_J, nu_before = state.nu;
-    const double expected = growth_by_compression(over(), before, nu_before, 0.82) * h;
+    const double h = 1e-6, before = state.phi_J;
+    const double expected = (growth_by_compression(over(), before, nu, 0.82) -
+                             memory_in(state) * growth_by_compression(over(), 0.6649, nu, 0.82)) *
+                            h;
     ASSERT_FALSE(walk_by(WalkedBy::bdf, state, h, 0, {1e-11, 1e-14}).failed());
     EXPECT_NEAR(state.phi_J - before, expected, 1e-2 * expected) << nu;
   }

@@ -50,7 +50,7 @@ TEST(MemoryReversal, TheOldDirectionEmptiesByItsClosedForm) {
         ASSERT_GT(u, 0);
         EXPECT_NEAR(0.05 * std::log(u) + 0.95 * std::log1p(u), start - e / eps_r, 1e-6);
         const double simple = (1 + u_0) * std::exp(-e / eps_r) - 1;
-        if (simple > 0.2) {
+        if (simple > 0.4) {
           EXPECT_NEAR(u, simple, 0.05);
         }
       }
@@ -100,13 +100,13 @@ TEST(MemoryReversal, WhatOneReversalPacksFollowsItsClosedForm) {
   }
 }
 
-/// After so many cycles of this size from isotropy: the state, and the largest u on the way.
+/// After so many cycles of this size from isotropy: the state, and the largest u in the later half of them.
 std::pair<State, double> after_cycles(double size, int cycles) {
   State state = isotropic(0.70, 0.662);
   double most = 0;
   for (int i = 0; i < 2 * cycles; ++i) {
     EXPECT_FALSE(walk_by(WalkedBy::light, state, 0, i % 2 == 0 ? size : -size).failed());
-    most = std::max({most, state.shear.plus, state.shear.minus});
+    if (i >= cycles) most = std::max({most, state.shear.plus, state.shear.minus});
   }
   return {state, most};
 }
