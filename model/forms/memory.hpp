@@ -236,7 +236,7 @@ struct BasicMemory {
       }
     }
     if (laws.terms.volumetric) dydt[1] = fabric_by_volume(laws.volumetric, v, F);
-    if (v > 0) {
+    if (v > 0 && direction.jammed) {  // it begins with contacts, at an event
       const R lost = loss_by_compression(c, phi_H, m, phi_J, y);
       for (const std::size_t i : {2, 3}) dydt[i] = y[i] * (lost * -v);
     }
@@ -296,7 +296,12 @@ struct BasicMemory {
     state.history = compressed<P, T>(laws.memory.over, begin.history, state.nu);
     state.sigma_dev = y[0];
     state.F_dev = y[1];
-    state.shear = {y[2], y[3], y[4], y[5]};
+    const auto part = [](const T& u) -> T {  // a step may end a little beyond
+      if (u < 0) return 0.0;
+      if (u > 1) return 1.0;
+      return u;
+    };
+    state.shear = {part(y[2]), part(y[3]), part(y[4]), y[5]};
     state.phi_J = jamming_density_of(state);
     state.P = 0.0;
     if (state.jammed) state.P = pressure_of(state.nu, state.phi_J);

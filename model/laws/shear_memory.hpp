@@ -62,10 +62,10 @@ Meet<U, A> filling_rate(const U& u, const A& alpha) {
 }
 
 /// -eps_r du/d eps of the direction that is sheared against: 1 + u, and below u = 0.05 less, to end at 0
-/// without a corner.
+/// without a corner, and from below, where a step may end, leads back to it.
 template <class U>
 U emptying_rate(const U& u) {
-  if (u <= 0) return 0.0;
+  if (u <= 0) return u / 0.05;
   return (1 + u) * u / (u + 0.05);
 }
 

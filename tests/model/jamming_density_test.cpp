@@ -110,24 +110,24 @@ TEST(JammingDensity, DerivativesOfGrowth) {
   for (const double nu : {0.68, 0.725, 0.76}) {  // within a cycle, in between, beyond
     SCOPED_TRACE(nu);
     if (nu != 0.76)
-      expect_v_shape([&](double x) { return growth_by_compression(measured, x, nu, 0.73); }, phi,
-                     growth_by_compression(measured, D(phi, 0), D(nu), D(0.73)).slope[0], 0.02);
+      expect_v_shape([&](double x) { return growth_by_compression(measured, x, nu, 0.82); }, phi,
+                     growth_by_compression(measured, D(phi, 0), D(nu), D(0.82)).slope[0], 0.02);
     if (nu != 0.68)
-      expect_v_shape([&](double x) { return growth_by_compression(measured, phi, x, 0.73); }, nu,
-                     growth_by_compression(measured, D(phi), D(nu, 0), D(0.73)).slope[0], 0.02);
+      expect_v_shape([&](double x) { return growth_by_compression(measured, phi, x, 0.82); }, nu,
+                     growth_by_compression(measured, D(phi), D(nu, 0), D(0.82)).slope[0], 0.02);
     for (double OverCompression::*number :
          {&OverCompression::mu, &OverCompression::beta, &OverCompression::alpha_phi}) {
       const auto moved = [&](double x) {
         OverCompression o = measured;
         o.*number = x;
-        return growth_by_compression(o, phi, nu, 0.73);
+        return growth_by_compression(o, phi, nu, 0.82);
       };
       BasicOverCompression<D> o{measured.phi_SJ, measured.mu, measured.beta, measured.alpha_max,
                                 measured.alpha_phi};
       if (number == &OverCompression::mu) o.mu.slope[0] = 1;
       if (number == &OverCompression::beta) o.beta.slope[0] = 1;
       if (number == &OverCompression::alpha_phi) o.alpha_phi.slope[0] = 1;
-      expect_v_shape(moved, measured.*number, growth_by_compression(o, D(phi), D(nu), D(0.73)).slope[0],
+      expect_v_shape(moved, measured.*number, growth_by_compression(o, D(phi), D(nu), D(0.82)).slope[0],
                      1e-2 * measured.*number);
     }
   }
