@@ -69,6 +69,9 @@ struct BasicMemory {
   static constexpr bool goes_on_unjammed = true;
   BasicLaws<P> laws;
 
+  /// phi_t follows phi_ss over eps0/following of what is remembered, of which this is the least that counts.
+  static constexpr double following = 4, least_share = 0.05;
+
   /// Everything in the rates that depends on nu and the history alone.
   template <class T>
   struct Coefficients {
@@ -237,9 +240,13 @@ struct BasicMemory {
       }
     }
     if (laws.terms.volumetric) dydt[1] = fabric_by_volume(laws.volumetric, v, F);
-    if (v > 0) {
+    if (v > 0 && direction.jammed) {  // it begins with contacts, at an event
       const R lost = loss_by_compression(c, phi_H, m, phi_J, y);
       for (const std::size_t i : {2, 3}) dydt[i] = y[i] * (lost * -v);
+      // phi_t goes along with phi_H, so that it is phi_J that grows by Eqs. 5.1 and 5.5
+      R share = 1.0;
+      if (laws.memory.phi_pack > c.phi_H) share = 1 - y[4];
+      dydt[5] = share * growth_by_compression(laws.memory.over, c.phi_H, c.nu, c.phi_max) * v;
     }
     if (!shears) return true;
     dydt[1] = dydt[1] + approach_rate(q * c.F_max, F, c.beta_F * free * (size_e / direction.S_F_I));
@@ -248,7 +255,9 @@ struct BasicMemory {
       return ((1 - opposed) / laws.memory.eps0 + opposed / reversed) * size_e;
     };
     dydt[along] = dydt[along] + filling_rate(y[along], laws.memory.alpha) * per_strain(laws.memory.eps0_R);
-    dydt[5] = (c.phi_ss - y[5]) * (4 * size_e / (laws.memory.eps0 * (y[along] + 0.05)));
+    // What is remembered, as u of one direction, has to be turned over; next to nothing is at once.
+    const R whole = (y[2] < y[3] ? y[3] : y[2]) + least_share;
+    dydt[5] = dydt[5] + (c.phi_ss - y[5]) * (following * size_e / (laws.memory.eps0 * whole));
     const R emptied = emptying_rate(y[against]) * per_strain(laws.memory.eps_r);
     dydt[against] = dydt[against] - emptied;
     if (y[against] > y[4]) dydt[4] = laws.memory.pack_rate * (y[against] - y[4]) * emptied;
@@ -263,6 +272,10 @@ struct BasicMemory {
     const double emptying = value(y[stretch.q() > 0 ? 3 : 2]);
     double rate = std::max(value(c.beta_F) / value(direction.S_F_I),
                            value(laws.memory.alpha) / value(laws.memory.eps0));
+    const double remembers = std::max(value(y[2]), value(y[3]));
+    if (remembers > 0)
+      rate = std::max(rate, following / (value(laws.memory.eps0) * (remembers + least_share)) *
+                                std::min(1.0, value(memory(y[2], y[3]))));
     if (emptying > 0) rate = std::max(rate, emptying_rate(emptying) / (emptying * value(laws.memory.eps_r)));
     if (direction.jammed) {
       using R = Meet<C, S>;
@@ -300,7 +313,12 @@ struct BasicMemory {
     state.history = compressed<P, T>(laws.memory.over, begin.history, state.nu);
     state.sigma_dev = y[0];
     state.F_dev = y[1];
-    state.shear = {y[2], y[3], y[4], y[5]};
+    const auto part = [](const T& u) -> T {  // a step may end a little beyond
+      if (u < 0) return 0.0;
+      if (u > 1) return 1.0;
+      return u;
+    };
+    state.shear = {part(y[2]), part(y[3]), part(y[4]), y[5]};
     state.phi_J = jamming_density_of(state);
     state.P = 0.0;
     if (state.jammed) state.P = pressure_of(state.nu, state.phi_J);

@@ -73,10 +73,14 @@ Meet<P, T> growth_by_compression(const BasicOverCompression<P>& o, const T& phi,
     const R limit = jamming_density_limit(o, reached);
     if (phi < limit) {
       const R x = -log((limit - phi) / (limit - o.phi_SJ)), M = o.mu * pow(x, 1 / o.beta);
-      as_cycle = (limit - phi) * o.beta * x / (M * log(reached / phi));
+      R length = log(reached / phi);
+      if (length < 1e-3) length = 1e-3;  // next to phi_max all cycles are short
+      as_cycle = (limit - phi) * o.beta * x / (M * length);
     }
   }
-  return as_cycle + part * (as_first - as_cycle);
+  const R grown = as_cycle + part * (as_first - as_cycle), above = log(nu / phi) / 0.002;
+  if (above >= 1) return grown;
+  return grown * above * above * (3 - 2 * above);
 }
 
 /// Where `holds` turns from true to false between low and high.

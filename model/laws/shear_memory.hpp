@@ -8,9 +8,8 @@
 //   phi_J = phi_H + (phi_t - phi_H) m,
 // phi_t the jamming density of the steady state towards which it was sheared.
 // Since alpha > 1, a rate of a never leaves a = 0. What is integrated is u = a^(1/alpha), which begins as
-// eps/eps0. Shear against a direction empties its u at a constant rate, down to 0: du = -|d eps_dev|/eps_r after
-// steady shear, and as it was filled, with eps0, where the fabric does not oppose. As eps_r < eps0_R, small
-// cycles leave next to nothing.
+// eps/eps0. Shear against a direction empties its u at a constant rate, down to 0: du = -|d eps_dev|/eps_r
+// after steady shear, and as it was filled, with eps0, where the fabric does not oppose.
 #pragma once
 
 #include <cmath>
@@ -61,13 +60,13 @@ Meet<U, A> filling_rate(const U& u, const A& alpha) {
   return pow(ratio, R(1 - 1 / alpha)) * (1 - a);
 }
 
-/// -eps_r du/d eps of the direction that is sheared against: 1, and about u = 0.03 less, to end at 0 without a
-/// corner.
+/// -eps_r du/d eps of the direction that is sheared against: 1, and about u = smooth_end less, to end at 0
+/// without a corner; below 0, where a step may end, it leads back.
+inline constexpr double smooth_end = 0.03;
 template <class U>
 U emptying_rate(const U& u) {
   using std::pow;
-  if (u <= 0) return 0.0;
-  return u / pow(u * u + 0.0009, 0.5);
+  return u / pow(u * u + smooth_end * smooth_end, 0.5);
 }
 
 /// How far the fabric opposes a shear that begins where |1 - q F_dev/F_max| = S_F_I: 0 from isotropy, 1 after

@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
   CHECK(grainlaw_law_from_file(argv[1], &settings, &law, message, sizeof message) == GRAINLAW_OK);
   CHECK(grainlaw_context_create(law, &context) == GRAINLAW_OK);
   if (!context) return EXIT_FAILURE;
-  CHECK(grainlaw_state_length(law) <= most && grainlaw_state_version() == 1);
+  CHECK(grainlaw_state_length(law) <= most && grainlaw_state_version() == 2);
   CHECK(strcmp(grainlaw_status_text(GRAINLAW_OK), "ok") == 0 && strlen(grainlaw_version()) >= 5);
   check_plane_shear(law, context);
   check_refusals(law, context);

@@ -13,15 +13,15 @@ namespace {
 using testing::HasSubstr;
 
 TEST_F(CInterface, TheStateByName) {
-  EXPECT_EQ(grainlaw_state_version(), 1);
-  EXPECT_EQ(grainlaw_state_length(law), 20U);
+  EXPECT_EQ(grainlaw_state_version(), 2);
+  EXPECT_EQ(grainlaw_state_length(law), 23U);
   for (std::size_t i = 0; i < state.size(); ++i)
     EXPECT_EQ(grainlaw_state_index(law, grainlaw_state_name(law, i)), static_cast<int>(i));
   EXPECT_EQ(grainlaw_state_index(law, "sigma"), -1);
   EXPECT_EQ(grainlaw_state_index(law, nullptr), -1);
-  EXPECT_EQ(grainlaw_state_name(law, 20), nullptr);
+  EXPECT_EQ(grainlaw_state_name(law, 23), nullptr);
   EXPECT_EQ(grainlaw_state_length(nullptr), 0U);
-  EXPECT_EQ(entry("version"), 1);
+  EXPECT_EQ(entry("version"), 2);
   EXPECT_EQ(entry("nu"), 0.711);
   EXPECT_EQ(entry("jammed"), 1);
   EXPECT_NEAR(entry("P"), 0.02218, 1e-5);
@@ -65,14 +65,14 @@ TEST_F(CInterface, BadStarts) {
   const auto start = [&](const char* const* names, const double* values, double* to, std::size_t length) {
     return grainlaw_start(context, 1, names, values, to, length);
   };
-  expect_refused(start(nullptr, &value, state.data(), 20), GRAINLAW_BAD_ARGUMENT, "names: must not be NULL",
+  expect_refused(start(nullptr, &value, state.data(), 23), GRAINLAW_BAD_ARGUMENT, "names: must not be NULL",
                  before);
-  expect_refused(start(&name, nullptr, state.data(), 20), GRAINLAW_BAD_ARGUMENT, "values: must not be NULL",
+  expect_refused(start(&name, nullptr, state.data(), 23), GRAINLAW_BAD_ARGUMENT, "values: must not be NULL",
                  before);
-  expect_refused(start(&name, &value, nullptr, 20), GRAINLAW_BAD_ARGUMENT, "state: must not be NULL", before);
-  expect_refused(start(&name, &value, state.data(), 19), GRAINLAW_BAD_ARGUMENT,
-                 "length: must be grainlaw_state_length() = 20, got 19", before);
-  EXPECT_EQ(grainlaw_start(nullptr, 1, &name, &value, state.data(), 20), GRAINLAW_BAD_ARGUMENT);
+  expect_refused(start(&name, &value, nullptr, 23), GRAINLAW_BAD_ARGUMENT, "state: must not be NULL", before);
+  expect_refused(start(&name, &value, state.data(), 22), GRAINLAW_BAD_ARGUMENT,
+                 "length: must be grainlaw_state_length() = 23, got 22", before);
+  EXPECT_EQ(grainlaw_start(nullptr, 1, &name, &value, state.data(), 23), GRAINLAW_BAD_ARGUMENT);
 }
 
 TEST_F(CInterface, BadUpdates) {
@@ -83,24 +83,24 @@ TEST_F(CInterface, BadUpdates) {
   const auto refused = [&](int status, const char* why) {
     expect_refused(status, GRAINLAW_BAD_ARGUMENT, why, before);
   };
-  refused(call(nullptr, 20, d2_step.data(), stress.data()), "state: must not be NULL");
-  refused(call(state.data(), 20, nullptr, stress.data()), "strain_increment: must not be NULL");
-  refused(call(state.data(), 20, d2_step.data(), nullptr), "stress: must not be NULL");
+  refused(call(nullptr, 23, d2_step.data(), stress.data()), "state: must not be NULL");
+  refused(call(state.data(), 23, nullptr, stress.data()), "strain_increment: must not be NULL");
+  refused(call(state.data(), 23, d2_step.data(), nullptr), "stress: must not be NULL");
   refused(call(state.data(), 17, d2_step.data(), stress.data()), "length: must be");
   refused(update({0, 0, 0, 0, 0, NAN}), "strain_increment[5]: must be finite, got nan");
   refused(update({INFINITY, 0, 0, 0, 0, 0}), "strain_increment[0]: must be finite, got inf");
-  EXPECT_EQ(grainlaw_update(nullptr, state.data(), 20, d2_step.data(), stress.data(), nullptr),
+  EXPECT_EQ(grainlaw_update(nullptr, state.data(), 23, d2_step.data(), stress.data(), nullptr),
             GRAINLAW_BAD_ARGUMENT);
   EXPECT_STREQ(grainlaw_message(nullptr), "the context is NULL");
   EXPECT_EQ(grainlaw_stress(context, state.data(), 3, stress.data()), GRAINLAW_BAD_ARGUMENT);
-  EXPECT_EQ(grainlaw_stress(context, state.data(), 20, nullptr), GRAINLAW_BAD_ARGUMENT);
+  EXPECT_EQ(grainlaw_stress(context, state.data(), 23, nullptr), GRAINLAW_BAD_ARGUMENT);
   EXPECT_EQ(grainlaw_context_replay_file(nullptr, "x"), GRAINLAW_BAD_ARGUMENT);
 }
 
 TEST_F(CInterface, StatesThatAreNone) {
   for (const auto& [name, value, why] : std::vector<std::tuple<const char*, double, const char*>>{
-           {"version", 2, "state: version: must be 1"},
-           {"version", 0, "state: version: must be 1"},
+           {"version", 1, "state: version: must be 2"},
+           {"version", 0, "state: version: must be 2"},
            {"nu", 0, "state: nu: must be > 0"},
            {"nu", NAN, "state: nu: must be finite"},
            {"P", -1, "state: P: must be > 0 where jammed, got -1"},
@@ -111,7 +111,11 @@ TEST_F(CInterface, StatesThatAreNone) {
            {"phi_J_laws", 0, "state: phi_J_laws: must be > 0"},
            {"direction", 2, "state: direction: must be -1, 0 or 1"},
            {"S_I", 0, "state: S_I: must be > 0"},
-           {"S_F_I", -1, "state: S_F_I: must be > 0"}}) {
+           {"S_F_I", -1, "state: S_F_I: must be > 0"},
+           {"memory_plus", -1e-9, "state: memory_plus: must be in [0, 1]"},
+           {"memory_minus", 1.5, "state: memory_minus: must be in [0, 1]"},
+           {"packed", 2, "state: packed: must be in [0, 1]"},
+           {"phi_t", NAN, "state: phi_t: must be finite"}}) {
     const std::vector<double> good = state;
     entry(name) = value;
     const std::vector<double> before = state;

@@ -60,7 +60,7 @@ TEST_F(CUpdate, TensionPositiveHosts) {
 
 /// Points at several densities, with states further apart than they are long.
 struct Field {
-  static constexpr std::size_t count = 101, stride = 20;
+  static constexpr std::size_t count = 101, stride = 23;
   std::vector<double> states = std::vector<double>(count * stride, 13.0), strains, stresses, tangents;
   std::vector<int> statuses = std::vector<int>(count, 99);
   grainlaw_outcome outcome{99, 99, 99};
@@ -69,7 +69,7 @@ struct Field {
     const std::array names{"nu", "phi_J"};
     for (std::size_t i = 0; i < count; ++i) {
       const std::array values{0.66 + 0.001 * static_cast<double>(i), i % 3 == 0 ? 0.66 : 0.665};
-      EXPECT_GE(grainlaw_start(context, 2, names.data(), values.data(), &states[i * stride], 20), 0);
+      EXPECT_GE(grainlaw_start(context, 2, names.data(), values.data(), &states[i * stride], 23), 0);
       const double e = 1e-4 * (1 + static_cast<double>(i % 7));
       strains.insert(strains.end(), {1e-5 - e, 1e-5 + e, 1e-5, 0, 0, 0});
     }
@@ -89,7 +89,7 @@ TEST_F(CUpdate, ManyPointsAsOneByOne) {
       std::size_t unjammed = 0;
       for (std::size_t i = 0; i < Field::count; ++i) {
         const int status =
-            grainlaw_update(context, &alone.states[i * Field::stride], 20, &alone.strains[6 * i],
+            grainlaw_update(context, &alone.states[i * Field::stride], 23, &alone.strains[6 * i],
                             &alone.stresses[6 * i], slopes ? &alone.tangents[36 * i] : nullptr);
         EXPECT_EQ(field.statuses[i], status);
         if (status == GRAINLAW_UNJAMMED) ++unjammed;
@@ -108,12 +108,12 @@ TEST_F(CUpdate, ManyPointsOfOneHistory) {
   settings.rtol = 1e-6;
   settings.atol = 1e-9;
   make(thesis().to_json().dump());
-  constexpr std::size_t count = 1000, stride = 22;
+  constexpr std::size_t count = 1000, stride = 25;
   std::vector<double> begin(count * stride, 13.0), strains;
   for (std::size_t i = 0; i < count; ++i) {
     const char* name = "nu";
     const double nu = 0.66 + 0.0001 * static_cast<double>(i), e = 1e-4 * (1 + static_cast<double>(i % 7));
-    ASSERT_GE(grainlaw_start(context, 1, &name, &nu, &begin[i * stride], 20), 0);
+    ASSERT_GE(grainlaw_start(context, 1, &name, &nu, &begin[i * stride], 23), 0);
     strains.insert(strains.end(), {1e-5 - e, 1e-5 + e, 1e-5, 0, 0, 0});
   }
   const auto walked = [&](int threads) {
@@ -143,13 +143,13 @@ TEST_F(CUpdate, ManyPointsOfOneHistory) {
     for (int step = 0; step < 10; ++step) {
       Six e;
       for (std::size_t k = 0; k < 6; ++k) e[k] = (step < 7 ? 1 : -1) * strains[6 * i + k];
-      EXPECT_GE(grainlaw_update(context, &alone[i * stride], 20, e.data(), there.data(), nullptr), 0);
+      EXPECT_GE(grainlaw_update(context, &alone[i * stride], 23, e.data(), there.data(), nullptr), 0);
     }
-    for (std::size_t k = 0; k < 20; ++k)
+    for (std::size_t k = 0; k < 23; ++k)
       EXPECT_NEAR(one[i * stride + k], alone[i * stride + k], k == 5 ? INFINITY : 1e-7)
           << i << " entry " << k;
     differ += one[i * stride + 3] != alone[i * stride + 3] ? 1 : 0;
-    EXPECT_EQ(one[i * stride + 20], 13) << "what lies between states is the caller's";
+    EXPECT_EQ(one[i * stride + 23], 13) << "what lies between states is the caller's";
     EXPECT_NEAR(one[count * stride + 6 * i], there[0], 1e-7);
   }
   EXPECT_GT(differ, 0U);
@@ -169,7 +169,7 @@ TEST_F(CUpdate, ManyPointsNameTheFirstThatFails) {
     EXPECT_EQ(field.statuses[42], GRAINLAW_NOT_COAXIAL);
     EXPECT_EQ(field.statuses[90], GRAINLAW_BAD_ARGUMENT);
     for (const std::size_t i : {42, 80, 90}) {
-      EXPECT_TRUE(std::equal(&field.states[i * Field::stride], &field.states[i * Field::stride] + 20,
+      EXPECT_TRUE(std::equal(&field.states[i * Field::stride], &field.states[i * Field::stride] + 23,
                              &before.states[i * Field::stride]));
       EXPECT_EQ(field.stresses[6 * i], 7);
     }
@@ -191,29 +191,29 @@ TEST_F(CUpdate, ManyPointsBadArguments) {
     EXPECT_EQ(field.outcome.failed, 99U);
     EXPECT_EQ(field.stresses[0], 7);
   };
-  refused(call(nullptr, 20, e, to, 1), "states: must not be NULL");
-  refused(call(s, 20, nullptr, to, 1), "strain_increments: must not be NULL");
-  refused(call(s, 20, e, nullptr, 1), "stresses: must not be NULL");
-  refused(call(s, 19, e, to, 1), "stride: must be >= grainlaw_state_length() = 20, got 19");
-  refused(call(s, 20, e, to, 0), "threads: must be >= 1, got 0");
-  EXPECT_EQ(grainlaw_update_many(context, 0, s, 20, e, to, nullptr, 2, nullptr, nullptr), GRAINLAW_OK);
+  refused(call(nullptr, 23, e, to, 1), "states: must not be NULL");
+  refused(call(s, 23, nullptr, to, 1), "strain_increments: must not be NULL");
+  refused(call(s, 23, e, nullptr, 1), "stresses: must not be NULL");
+  refused(call(s, 22, e, to, 1), "stride: must be >= grainlaw_state_length() = 23, got 22");
+  refused(call(s, 23, e, to, 0), "threads: must be >= 1, got 0");
+  EXPECT_EQ(grainlaw_update_many(context, 0, s, 23, e, to, nullptr, 2, nullptr, nullptr), GRAINLAW_OK);
 }
 
 TEST_F(CUpdate, AContextPerThreadAndOneLaw) {
   const auto walk = [this](grainlaw_context* own, double sign) {
-    std::vector<double> point(20);
+    std::vector<double> point(23);
     Six there{};
     std::array<double, 36> slopes{};
     const char* name = "nu";
     const double nu = 0.7 + 0.01 * sign;
-    EXPECT_EQ(grainlaw_start(own, 1, &name, &nu, point.data(), 20), GRAINLAW_OK);
+    EXPECT_EQ(grainlaw_start(own, 1, &name, &nu, point.data(), 23), GRAINLAW_OK);
     for (int i = 0; i < 3000; ++i) {
       const double e = (i % 300 < 200 ? sign : -sign) * 1e-4;
       const Six along{-e, e, 0, 0, 0, 0}, off{0, 0, 0, 0, 0, e};
-      EXPECT_EQ(grainlaw_update(own, point.data(), 20, off.data(), there.data(), nullptr),
+      EXPECT_EQ(grainlaw_update(own, point.data(), 23, off.data(), there.data(), nullptr),
                 GRAINLAW_NOT_COAXIAL);
       EXPECT_EQ(
-          grainlaw_update(own, point.data(), 20, along.data(), there.data(), i % 2 ? slopes.data() : nullptr),
+          grainlaw_update(own, point.data(), 23, along.data(), there.data(), i % 2 ? slopes.data() : nullptr),
           GRAINLAW_OK);
     }
     point.insert(point.end(), there.begin(), there.end());

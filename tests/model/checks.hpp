@@ -27,8 +27,10 @@ inline ParameterSet thesis() { return ParameterSet::load(thesis_file()); }
 /// With the numbers of the form with memory, which the thesis has not.
 inline ParameterSet thesis_with_memory() {
   ParameterSet set = thesis();
-  set.memory->eps_c.emplace().value = 0.042;
-  set.memory->hold.emplace().value = 0.4;
+  set.memory->eps_r.emplace().value = 0.145;
+  set.memory->hold.emplace().value = 0.3;
+  set.memory->pack_rate.emplace().value = 2;
+  set.memory->phi_pack.emplace().value = 0.668;
   return set;
 }
 

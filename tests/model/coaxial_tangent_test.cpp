@@ -88,8 +88,7 @@ TEST(CoaxialTangent, IsotropicShearIsHowAnIsotropicPointBegins) {
 }
 
 TEST(CoaxialTangent, IsotropicShearOfAPointWithMemory) {
-  ParameterSet set = thesis();
-  set.memory->eps_c.emplace().value = 0.0423;
+  const ParameterSet set = thesis_with_memory();
   const CoaxialLaw law(set, settings_of(d2, Form::memory));
   CoaxialState state = law.start(Start{0.711, {}, {}, {}, {}, {}}).state;
   const double K = isotropic_shear_stiffness(make_law(set, {Form::memory, {}}), state.point);

@@ -20,13 +20,7 @@ using testing::HasSubstr;
 constexpr Form forms[] = {Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14};
 constexpr Form all_forms[] = {Form::reduced_closed, Form::reduced, Form::coupled, Form::coupled_3_14,
                               Form::memory};
-ParameterSet set_of(Form form) {
-  ParameterSet set = thesis();
-  if (form != Form::memory) return set;
-  set.memory->eps_c.emplace().value = 0.042;
-  set.memory->hold.emplace().value = 0.4;
-  return set;
-}
+ParameterSet set_of(Form form) { return form == Form::memory ? thesis_with_memory() : thesis(); }
 bool is_coupled(Form form) {
   return form == Form::coupled || form == Form::coupled_3_14 || form == Form::memory;
 }

@@ -107,9 +107,9 @@ void everywhere(double nu, Check check, const ParameterSet& set = numbers(),
 /// A sheared state with `s` times s_max and F_max; in the form with memory in steady shear.
 void saturate(const Law& law, State& state, double s) {
   if (const auto* form = std::get_if<Memory>(&law)) {
-    state.memory = 1;
-    state.P = form->pressure_of(state.nu, state.history.phi_H, 1.0);
-    state.phi_J = form->jamming_density_of(state.history.phi_H, 1.0);
+    state.shear.plus = 1;
+    state.phi_J = form->jamming_density_of(state);
+    state.P = form->pressure_of(state.nu, state.phi_J);
   }
   state.sigma_dev = s * saturation(laws_of(law).s_max, state.nu) * state.P;
   state.F_dev = saturation(laws_of(law).F_max, state.nu);

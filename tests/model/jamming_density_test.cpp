@@ -1,4 +1,5 @@
-// Eqs. 5.1 and 5.5 against their check numbers, and the inversion of the pressure law.
+// Eqs. 5.1 and 5.5 against their check numbers, their inverse and their rate, and the inversion of the
+// pressure law.
 #include "grainlaw/model/laws/jamming_density.hpp"
 
 #include <gtest/gtest.h>
@@ -30,6 +31,106 @@ TEST(JammingDensity, OneCompressionGoesTheSameShareOfTheWay) {
 TEST(JammingDensity, WithoutOverCompressionItIsTheLowest) {
   EXPECT_EQ(jamming_density_after(memory, 0.65, 1), 0.6567);
   EXPECT_EQ(jamming_density_after(memory, 0.8, 0), 0.6567);
+}
+
+/// Numbers of which Eq. 5.1 has others than exp(-1) at M = 1.
+const OverCompression measured{0.65723, 1.6269, 0.38273, 0.019929, 0.39902};
+
+TEST(JammingDensity, FirstCompressionToIsTheInverseOfOneCompression) {
+  for (const OverCompression& o : {memory, measured}) {
+    for (const double phi_max : {0.658, 0.68, 0.73, 0.82, 0.99})
+      EXPECT_NEAR(first_compression_to(o, jamming_density_after(o, phi_max, 1)), phi_max, 1e-11);
+    EXPECT_EQ(first_compression_to(o, o.phi_SJ), o.phi_SJ);
+    EXPECT_EQ(first_compression_to(o, o.phi_SJ - 0.01), o.phi_SJ);
+  }
+}
+
+TEST(JammingDensity, BeyondWhatHasLeftItGrowsAsFirstCompressionsDo) {
+  for (const OverCompression& o : {memory, measured})
+    for (const double nu : {0.67, 0.7, 0.82})
+      for (const double behind : {0.0, 1e-4, 2e-3}) {  // of a packing that shear has brought down
+        const double h = 1e-6, phi = jamming_density_after(o, nu, 1) - behind;
+        const double slope =
+            (jamming_density_after(o, nu * std::exp(h), 1) - jamming_density_after(o, nu * std::exp(-h), 1)) /
+            (2 * h);
+        EXPECT_NEAR(growth_by_compression(o, phi, nu, nu), slope, 1e-7 * slope) << nu;
+      }
+}
+
+TEST(JammingDensity, BelowThatItGrowsAsWithinACycle) {
+  // M counts up by 1 from phi to the largest density that is still part of the cycles.
+  for (const OverCompression& o : {memory, measured})
+    for (const auto& [phi_max, M] : {std::pair{0.73, 1.0}, {0.73, 1.7}, {0.73, 40.0}, {0.82, 3.0}}) {
+      const double phi = jamming_density_after(o, phi_max, M), h = 1e-5 * M;
+      const double by_M =
+          (jamming_density_after(o, phi_max, M + h) - jamming_density_after(o, phi_max, M - h)) / (2 * h);
+      const double expected = by_M / std::log(phi_max / phi);
+      for (const double nu : {1.0021 * phi, 0.5 * (phi + 0.97 * phi_max)})
+        EXPECT_NEAR(growth_by_compression(o, phi, nu, phi_max), expected, 1e-7 * expected) << M;
+    }
+  // One that has seen more than what leaves phi by one compression has been brought down: its cycle is that
+  // of this compression.
+  const double phi = jamming_density_after(memory, 0.70, 1);
+  EXPECT_EQ(growth_by_compression(memory, phi, 0.67, 0.82), growth_by_compression(memory, phi, 0.67, 0.70));
+}
+
+TEST(JammingDensity, GrowthWhereThereIsNone) {
+  const double phi = jamming_density_after(memory, 0.73, 1);
+  for (const double nu : {0.64, std::nextafter(phi, 0.0), phi})
+    EXPECT_EQ(growth_by_compression(memory, phi, nu, 0.73), 0) << "without contacts";
+  EXPECT_EQ(growth_by_compression(memory, 0.6567, 0.7, 0.73), 0) << "from phi_SJ: an infinite slope";
+  EXPECT_EQ(growth_by_compression(memory, jamming_density_limit(memory, 0.73), 0.69, 0.73), 0)
+      << "as cycles for ever have left it";
+}
+
+TEST(JammingDensity, GrowthPassesWithoutAJump) {
+  for (const OverCompression& o : {memory, measured})
+    for (const double at : {0.69, 0.73, 0.82}) {
+      const double phi = jamming_density_after(o, at, 1);
+      const auto growth = [&](double nu) { return growth_by_compression(o, phi, nu, at); };
+      const double from = at * std::exp(-0.02), whole = growth(at * 1.001) - growth(0.97 * at);
+      for (const double edge : {from, at})
+        EXPECT_NEAR(growth(edge * (1 + 1e-9)), growth(edge * (1 - 1e-9)), 1e-6 * growth(edge));
+      double before = growth(from);
+      for (int i = 1; i <= 200; ++i) {
+        const double next = growth(from * std::exp(0.02 * i / 200));
+        EXPECT_LE(std::abs(next - before), 0.02 * std::abs(whole)) << i;
+        before = next;
+      }
+      // Where the blend begins and ends it has no corner.
+      const double h = 1e-6, inside = (growth(from * (1 + h)) - growth(from)) / h,
+                   outside = (growth(from) - growth(from * (1 - h))) / h;
+      EXPECT_NEAR(inside, outside, 1e-2 * std::abs(whole) / 0.02);
+    }
+}
+
+TEST(JammingDensity, DerivativesOfGrowth) {
+  using D = Dual<1>;
+  const double phi = jamming_density_after(measured, 0.73, 1);
+  for (const double nu : {0.68, 0.725, 0.76}) {  // within a cycle, in between, beyond
+    SCOPED_TRACE(nu);
+    if (nu != 0.76)
+      expect_v_shape([&](double x) { return growth_by_compression(measured, x, nu, 0.82); }, phi,
+                     growth_by_compression(measured, D(phi, 0), D(nu), D(0.82)).slope[0], 0.02);
+    if (nu != 0.68)
+      expect_v_shape([&](double x) { return growth_by_compression(measured, phi, x, 0.82); }, nu,
+                     growth_by_compression(measured, D(phi), D(nu, 0), D(0.82)).slope[0], 0.02);
+    for (double OverCompression::*number :
+         {&OverCompression::mu, &OverCompression::beta, &OverCompression::alpha_phi}) {
+      const auto moved = [&](double x) {
+        OverCompression o = measured;
+        o.*number = x;
+        return growth_by_compression(o, phi, nu, 0.82);
+      };
+      BasicOverCompression<D> o{measured.phi_SJ, measured.mu, measured.beta, measured.alpha_max,
+                                measured.alpha_phi};
+      if (number == &OverCompression::mu) o.mu.slope[0] = 1;
+      if (number == &OverCompression::beta) o.beta.slope[0] = 1;
+      if (number == &OverCompression::alpha_phi) o.alpha_phi.slope[0] = 1;
+      expect_v_shape(moved, measured.*number, growth_by_compression(o, D(phi), D(nu), D(0.82)).slope[0],
+                     1e-2 * measured.*number);
+    }
+  }
 }
 
 TEST(JammingDensity, FromPressure) {

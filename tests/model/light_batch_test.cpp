@@ -21,7 +21,10 @@ State start_at(const Law& law, double nu) {
   state.P = pressure(laws_of(law).pressure, nu);
   state.phi_J = jamming_density(laws_of(law).pressure);
   state.jammed = state.P > 0;
-  if (form_of(law) == Form::memory) state.history = {state.phi_J, 0.82, nu};
+  if (const auto* form = std::get_if<Memory>(&law)) {
+    state.history = {state.phi_J, 0.82, nu};
+    state.shear.steady = form->steady_density(nu);
+  }
   return state;
 }
 

@@ -1,6 +1,5 @@
-// The form with memory: over-compression by Eqs. 5.1 and 5.5, shear by its rate against a closed form and
-// Eq. 5.3, shear jamming and loss of contact at reversal, pressure that does not drift, and every integrator
-// on all of it.
+// The form with memory: shear by Eq. 5.3 from isotropy, steady shear's pressure, shear jamming and loss of
+// contact at reversal, pressure that does not drift, and every integrator on all of it.
 #include "grainlaw/model/forms/memory.hpp"
 
 #include <gmock/gmock.h>
@@ -8,7 +7,6 @@
 
 #include <algorithm>
 
-#include "grainlaw/model/light/light_law.hpp"
 #include "grainlaw/model/predict.hpp"
 #include "grainlaw/model/start.hpp"
 #include "memory_fixture.hpp"
@@ -21,104 +19,83 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr double eps_c = 0.0423;
+/// Of the thesis.
+constexpr double alpha = 1.37, eps0 = 0.102;
 
-/// m after shear e from isotropy at constant volume: dm/de = [(1 - exp(-beta e))^2 - m]/eps_c.
-double remembered(double beta, double e) {
-  const double x = std::exp(-e / eps_c), b = beta * eps_c;
-  return 1 - x - 2 * (std::exp(-beta * e) - x) / (1 - b) + (std::exp(-2 * beta * e) - x) / (1 - 2 * b);
+/// Eq. 5.3: m after shear e from isotropy at constant volume.
+double remembered_after(double e) { return -std::expm1(-std::pow(e / eps0, alpha)); }
+/// The strain after which it is m.
+double strain_to(double m) { return eps0 * std::pow(-std::log(1 - m), 1 / alpha); }
+
+TEST(Memory, FirstLoadingFollowsEquation5_3InEveryIntegrator) {
+  for (const WalkedBy integrator : integrators)
+    for (const double nu : {0.66, 0.685, 0.711, 0.82})
+      for (const double q : {1.0, -1.0}) {
+        SCOPED_TRACE(std::string(name_of(integrator)) + " at " + to_text(nu));
+        State state = isotropic(nu);
+        ASSERT_EQ(memory_in(state), 0);
+        double e = 0;
+        for (const double step : {1e-6, 1e-4, 1e-3, 0.01, 0.03, 0.05, 0.1, 0.2, 0.5}) {
+          ASSERT_FALSE(walk_by(integrator, state, 0, q * step).failed());
+          e += step;
+          const double m = remembered_after(e);
+          EXPECT_NEAR(memory_in(state), m, 1e-7 * m) << e;
+          EXPECT_NEAR(state.phi_J, 0.6649 + m * (form().steady_density(nu) - 0.6649), 1e-10);
+          EXPECT_EQ(q > 0 ? state.shear.minus : state.shear.plus, 0);
+          EXPECT_EQ(state.shear.packed, 0) << "nothing has been given back yet";
+          EXPECT_EQ(state.shear.steady, form().steady_density(nu));
+          EXPECT_NEAR(state.P, state.jammed ? form().pressure_of(nu, state.phi_J) : 0, 1e-15);
+        }
+      }
 }
 
-TEST(Memory, CyclesOfOverCompressionFollowEquation5_1) {
-  const Memory law = form();
-  const auto& over = law.laws.memory.over;
-  for (const double phi_max : {0.68, 0.73, 0.82}) {
-    State start = isotropic(0.64, over.phi_SJ, 0.64);
-    MaterialPoint point = point_at(start);
-    for (int M = 1; M <= 20; ++M) {
-      ASSERT_FALSE(point.walk(std::log(phi_max / 0.64), 0).failed());
-      EXPECT_NEAR(point.state().history.phi_H, jamming_density_after(over, phi_max, M), 1e-6) << M;
-      EXPECT_NEAR(point.state().history.phi_max, phi_max, 1e-12);
-      ASSERT_FALSE(point.walk(-std::log(phi_max / 0.64), 0).failed());
-      EXPECT_FALSE(point.state().jammed);
-      EXPECT_NEAR(point.events().back().nu, jamming_density_after(over, phi_max, M), 1e-6) << M;
-    }
+TEST(Memory, FirstLoadingAsThePressureHasIt) {
+  // alpha_P and eps0_P stand before alpha and eps0, which the strains to jam have.
+  ParameterSet set = thesis_with_memory();
+  set.memory->alpha_P.emplace().value = 1.7026;
+  set.memory->eps0_P.emplace().value = 0.0785;
+  const Law law = make_law(set, Form::memory);
+  State state = isotropic(0.711);
+  ASSERT_FALSE(walk_by(WalkedBy::light, state, 0, 0.05, {1e-10, 1e-13}, law).failed());
+  EXPECT_NEAR(std::get<Memory>(law).memory(state.shear), -std::expm1(-std::pow(0.05 / 0.0785, 1.7026)), 1e-9);
+}
+
+TEST(Memory, TheSteadyDensityHasThePressureOfSteadyShear) {
+  for (int i = 0; i <= 160; ++i) {
+    const double nu = 0.66 + 0.001 * i, phi_ss = form().steady_density(nu);
+    const double P = pressure(form().laws.shear_pressure, nu);
+    EXPECT_NEAR(form().pressure_of(nu, phi_ss), P, 1e-10 * P) << nu;
+    EXPECT_LT(phi_ss, nu);
   }
-}
-
-TEST(Memory, OverCompressionMayBeCutIntoPieces) {
-  const State start = isotropic(0.64, 0.6567, 0.64);
-  const double up = std::log(0.73 / 0.64);
-  const auto compress = [&](int pieces) {
-    MaterialPoint point = point_at(start);
-    for (int cycle = 0; cycle < 3; ++cycle)
-      for (const double way : {up, -up})
-        for (int i = 0; i < pieces; ++i) EXPECT_FALSE(point.walk(way / pieces, 0).failed());
-    return point.state().history.phi_H;
-  };
-  // ln(phi_max/phi_H) is that of the piece: phi_H moves by 1e-3 of itself within a cycle.
-  EXPECT_NEAR(compress(1), compress(100), 2e-5);
-}
-
-TEST(Memory, BeyondTheLargestDensityACycleIsAFirstOneAgain) {
-  const auto& over = form().laws.memory.over;
-  const double five = jamming_density_after(over, 0.70, 5.0);
-  History history{five, 0.70, 0.64};
-  history = compressed<double, double>(over, history, 0.7001);
-  EXPECT_GE(history.phi_H, five);  // what cycles have left is not lost
-  history = compressed<double, double>(over, history, 0.82);
-  EXPECT_EQ(history.phi_H, jamming_density_after(over, 0.82, 1.0));
-  EXPECT_EQ(history.phi_max, 0.82);
-  history = compressed<double, double>(over, history, 0.7);
-  EXPECT_EQ(history.phi_H, jamming_density_after(over, 0.82, 1.0));
-}
-
-/// As one does that starts from a measured pressure: the least compression must not bring it to the mean
-/// packing.
-TEST(Memory, APackingThatJamsEarlierThanTheMeanOneGoesOnFromThere) {
-  const auto& over = form().laws.memory.over;
-  const double below = 0.002, mean = jamming_density_after(over, 0.70, 1.0);
-  const History start{mean - below, 0.70, 0.70};
-  const History least = compressed<double, double>(over, start, 0.70 * (1 + 1e-9));
-  EXPECT_NEAR(least.phi_H, start.phi_H, 1e-9);
-  const History once = compressed<double, double>(over, start, 0.82);
-  EXPECT_NEAR(once.phi_H, jamming_density_after(over, 0.82, 1.0) - below, 1e-15);
-  History pieces = start;
-  for (int i = 1; i <= 12; ++i) pieces = compressed<double, double>(over, pieces, 0.70 + 0.01 * i);
-  EXPECT_NEAR(pieces.phi_H, once.phi_H, 1e-14);
-}
-
-TEST(Memory, CompressionBelowTheShearJammingDensityLeavesNone) {
-  const auto& over = form().laws.memory.over;
-  History history{over.phi_SJ, 0.64, 0.64};
-  history = compressed<double, double>(over, history, 0.656);
-  EXPECT_EQ(history.phi_H, over.phi_SJ);
-  history = compressed<double, double>(over, history, over.phi_SJ);
-  EXPECT_EQ(history.phi_H, over.phi_SJ);
-  history = compressed<double, double>(over, history, 0.99);
-  EXPECT_EQ(history.phi_H, jamming_density_after(over, 0.99, 1.0));
-}
-
-TEST(Memory, ShearTakesTheJammingDensityByItsClosedForm) {
-  const Memory law = form();
-  const double nu = 0.711, beta = saturation(law.laws.beta_F, nu);
-  MaterialPoint point = point_at(isotropic(nu, 0.6649));
-  for (int i = 1; i <= 40; ++i) {
-    ASSERT_FALSE(point.walk(0, 0.01).failed());
-    const double m = remembered(beta, 0.01 * i);
-    EXPECT_NEAR(point.state().memory, m, 1e-9);
-    EXPECT_NEAR(point.state().phi_J, 0.6649 + m * (0.6581 - 0.6649), 1e-11);
-    EXPECT_NEAR(point.state().P, law.pressure_of(nu, 0.6649, m), 1e-10);
-  }
+  const double phi_s = form().laws.shear_pressure.nu_c;
+  for (const double nu : {0.6, std::nextafter(phi_s, 0.0), phi_s})
+    EXPECT_EQ(form().steady_density(nu), phi_s);
+  for (const double above : {1e-15, 1e-12, 1e-9, 1e-6, 1e-4})  // it leaves phi_s without a jump
+    EXPECT_NEAR(form().steady_density(phi_s * (1 + above)), phi_s, 2 * above + 1e-15) << above;
+  const Dual<1> slope = form().steady_density(Dual<1>(0.711, 0));
+  EXPECT_NEAR(slope.slope[0],
+              (form().steady_density(0.711 + 1e-6) - form().steady_density(0.711 - 1e-6)) / 2e-6, 1e-7);
 }
 
 TEST(Memory, SteadyShearHasThePressureOfItsRowWhateverWasBefore) {
-  const Memory law = form();
-  for (const double phi_J : {0.6600, 0.6649, 0.6690}) {
-    MaterialPoint point = point_at(isotropic(0.711, phi_J));
-    ASSERT_FALSE(point.walk(0, 2).failed());
-    EXPECT_NEAR(point.state().P, pressure(law.laws.shear_pressure, 0.711), 1e-9);
-    EXPECT_NEAR(point.state().s_dev(), saturation(law.laws.s_max, 0.711), 1e-6);
+  for (const WalkedBy integrator : integrators)
+    for (const double nu : {0.66, 0.67, 0.711, 0.77, 0.82})
+      for (const double phi_J : {0.6600, 0.6649, 0.6690}) {
+        State state = isotropic(nu, phi_J);
+        ASSERT_FALSE(walk_by(integrator, state, 0, 3, {1e-11, 1e-14}).failed());
+        const double P = pressure(form().laws.shear_pressure, nu);
+        EXPECT_NEAR(state.P, P, 1e-10 + 1e-8 * P) << name_of(integrator) << nu << ' ' << phi_J;
+        EXPECT_NEAR(state.s_dev(), saturation(form().laws.s_max, nu), 1e-6);
+      }
+}
+
+TEST(Memory, SteadyShearAtAnotherDensityFindsItsPressureToo) {
+  // phi_t follows phi_ss(nu), also where the volume has moved since.
+  State state = isotropic(0.69);
+  for (const auto& [v, e] : {std::pair{0.0, 1.0}, {0.04, 0.02}, {0.0, 2.0}, {-0.03, 0.0}, {0.0, -2.0}}) {
+    ASSERT_FALSE(walk_by(WalkedBy::bdf, state, v, e, {1e-11, 1e-14}).failed());
+    if (v != 0) continue;
+    EXPECT_NEAR(state.P, pressure(form().laws.shear_pressure, state.nu), 1e-7) << state.nu;
   }
 }
 
@@ -142,25 +119,26 @@ TEST(Memory, ManyCyclesDoNotPumpPressure) {
     ASSERT_FALSE(point.walk(0, i % 2 == 0 ? 0.1 : -0.1).failed());
     if (i % 2 == 1) ends.push_back(point.state().P);
   }
-  EXPECT_NEAR(ends.back(), ends[20], 1e-7 * ends[20]);
-  MaterialPoint without(make_law(with_memory(), Form::coupled), isotropic(0.711, 0.6649), {1e-8, 1e-11});
+  // What packs goes on as the inverse of the number of cycles, and P with it.
+  EXPECT_NEAR(ends.back(), ends[20], 1e-3 * ends[20]);
+  EXPECT_NEAR(ends.back(), ends[150], 5e-5 * ends[150]);
+  MaterialPoint without(make_law(thesis_with_memory(), Form::coupled), isotropic(0.711, 0.6649),
+                        {1e-8, 1e-11});
   for (int i = 0; i < 400; ++i) ASSERT_FALSE(without.walk(0, i % 2 == 0 ? 0.1 : -0.1).failed());
   EXPECT_GT(std::abs(without.state().P / ends[20] - 1), 0.1);  // Eq. 4.16 by itself does
 }
 
 TEST(Memory, ShearJamsBetweenBothDensitiesAndReversalUnjams) {
-  const Memory law = form();
-  const double nu = 0.6610, phi_H = 0.6649, phi_s = law.laws.shear_pressure.nu_c;
+  const double nu = 0.6610, phi_H = 0.6649;
   MaterialPoint point = point_at(isotropic(nu, phi_H));
   ASSERT_FALSE(point.state().jammed);
   ASSERT_FALSE(point.walk(0, 0.3).failed());
   ASSERT_TRUE(point.state().jammed);
   EXPECT_GT(point.state().P, 1e-4);
   EXPECT_GT(point.state().s_dev(), 0.05);
-  // Where it jams: m = (phi_H - nu)/(phi_H - phi_s), by the closed form.
+  // Where it jams: m = (phi_H - nu)/(phi_H - phi_ss), by Eq. 5.3.
   ASSERT_EQ(point.events().size(), 1U);
-  const double e = point.events()[0].eps_dev, beta = saturation(law.laws.beta_F, nu);
-  EXPECT_NEAR(remembered(beta, e), (phi_H - nu) / (phi_H - phi_s), 1e-4);
+  EXPECT_NEAR(point.events()[0].eps_dev, strain_to((phi_H - nu) / (phi_H - form().steady_density(nu))), 1e-5);
   ASSERT_FALSE(point.walk(0, -0.06).failed());
   EXPECT_FALSE(point.state().jammed);
   ASSERT_FALSE(point.walk(0, -0.3).failed());
@@ -181,21 +159,21 @@ TEST(Memory, BelowTheDensityOfSteadyShearNothingJams) {
   }
 }
 
-TEST(Memory, ShearNeverUnjamsAPackingThatJamsBelowSteadyShear) {
-  // Over-compression to 0.66 leaves phi_H between phi_SJ and phi_s.
-  const double phi_H = 0.6570, nu = 0.6575;
-  ASSERT_LT(nu, form().laws.shear_pressure.nu_c);
+TEST(Memory, APackingThatJamsBelowSteadyShearIsUnjammedByIt) {
+  // Over-compression to 0.66 leaves phi_H between phi_SJ and phi_s: it gives way to phi_s.
+  const double phi_H = 0.6570, nu = 0.6575, phi_s = form().laws.shear_pressure.nu_c;
+  ASSERT_LT(nu, phi_s);
   MaterialPoint point = point_at(isotropic(nu, phi_H));
   ASSERT_TRUE(point.state().jammed);
-  for (const double e : {0.3, -0.3, 0.05, -0.05}) {
-    ASSERT_FALSE(point.walk(0, e).failed());
-    EXPECT_TRUE(point.state().jammed);
-    EXPECT_EQ(point.state().phi_J, phi_H);
-  }
+  ASSERT_FALSE(point.walk(0, 3).failed());
+  EXPECT_FALSE(point.state().jammed);
+  ASSERT_EQ(point.events().size(), 1U);
+  EXPECT_NEAR(point.events()[0].eps_dev, strain_to((nu - phi_H) / (phi_s - phi_H)), 1e-4);
+  EXPECT_NEAR(point.state().phi_J, phi_s, 1e-9);
 }
 
 TEST(Memory, VolumeMovesFromAnyDensityOnTheLightPath) {
-  const Law law = make_law(with_memory(), Form::memory);
+  const Law law = memory_law();
   const LightLaw light(law, {1e-8, 1e-11});
   const double phi_s = form().laws.shear_pressure.nu_c;
   for (const double nu : {phi_s, phi_s * (1 + 1e-12), phi_s * (1 - 1e-12)})
@@ -207,24 +185,23 @@ TEST(Memory, VolumeMovesFromAnyDensityOnTheLightPath) {
 }
 
 TEST(Memory, StatesThatAreNoneAreRefused) {
-  const LightLaw light(make_law(with_memory(), Form::memory), {1e-8, 1e-11});
+  const LightLaw light(memory_law(), {1e-8, 1e-11});
   const State good = isotropic(0.7, 0.6649);
   for (const double wrong : {std::nan(""), -0.1, 1.1}) {
-    State state = good;
-    state.memory = wrong;
-    EXPECT_TRUE(light.update(state, 0, 0.01).failed());
-    EXPECT_TRUE(light.update(state, 0, 0).failed());
+    for (double ShearHistory::*member : {&ShearHistory::plus, &ShearHistory::minus, &ShearHistory::packed}) {
+      State state = good;
+      state.shear.*member = wrong;
+      EXPECT_TRUE(light.update(state, 0, 0.01).failed());
+      EXPECT_TRUE(light.update(state, 0, 0).failed());
+    }
   }
+  State state = good;
+  state.shear.steady = std::nan("");
+  EXPECT_TRUE(light.update(state, 0, 0.01).failed());
   MaterialPoint point = point_at(good);
   EXPECT_TRUE(point.walk(1e3, 0).failed());
   EXPECT_TRUE(point.walk(0, 1e300).failed());
   EXPECT_EQ(point.state().nu, good.nu);
-}
-
-TEST(Memory, AFirstCompressionMayBeginAtTheLowestDensity) {
-  const auto& over = form().laws.memory.over;
-  const History h = compressed<double, double>(over, {over.phi_SJ, 0.73, 0.64}, 0.73);
-  EXPECT_NEAR(h.phi_H, jamming_density_after(over, 0.73, 1.0), 1e-12);
 }
 
 TEST(Memory, ExactlyAtTheJammingDensity) {
@@ -245,7 +222,7 @@ const std::vector<std::array<double, 2>> eventful{
     {-0.1, -0.1}, {0.03, 0},   {0, 0.3},     {0, 0},   {0, -0.3},  {0.2, 0.2}, {-0.25, 0},  {0.05, 0.5}};
 
 TEST(Memory, LightPathAgreesWithCvodeThroughEverything) {
-  const Law law = make_law(with_memory(), Form::memory);
+  const Law law = memory_law();
   const State start = isotropic(0.64, 0.6567, 0.64);
   MaterialPoint point(law, start, {1e-11, 1e-14});
   std::vector<State> reference;
@@ -265,14 +242,17 @@ TEST(Memory, LightPathAgreesWithCvodeThroughEverything) {
       EXPECT_NEAR(state.P, reference[i].P, 10 * rtol * 0.02) << i;
       EXPECT_NEAR(state.sigma_dev, reference[i].sigma_dev, 10 * rtol * 0.004) << i;
       EXPECT_NEAR(state.F_dev, reference[i].F_dev, 10 * rtol * 0.12) << i;
-      EXPECT_NEAR(state.memory, reference[i].memory, 10 * rtol) << i;
+      EXPECT_NEAR(state.shear.plus, reference[i].shear.plus, 10 * rtol) << i;
+      EXPECT_NEAR(state.shear.minus, reference[i].shear.minus, 10 * rtol) << i;
+      EXPECT_NEAR(state.shear.packed, reference[i].shear.packed, 10 * rtol) << i;
+      EXPECT_NEAR(state.phi_J, reference[i].phi_J, 10 * rtol * 0.01) << i;
     }
   }
 }
 
-/// What an integration leaves is admitted again: loose steps may take m past 1 by their error.
+/// What an integration leaves is admitted again: loose steps may take u past its ends by their error.
 TEST(Memory, AdmitsItsOwnStatesAtALooseTolerance) {
-  const Law law = make_law(with_memory(), Form::memory);
+  const Law law = memory_law();
   for (const LightMethod method : {LightMethod::automatic, LightMethod::explicit_third})
     for (const double rtol : {1e-3, 1e-4}) {
       const LightLaw light(law, {rtol, 1e-3 * rtol}, method);
@@ -282,14 +262,15 @@ TEST(Memory, AdmitsItsOwnStatesAtALooseTolerance) {
           const Status status = light.update(state, v / 10, e / 10);
           ASSERT_FALSE(status.failed()) << status.message;
         }
-      EXPECT_NEAR(state.memory, std::clamp(state.memory, 0.0, 1.0), 10 * rtol);
-      state.memory = 1.5;
+      for (const double u : {state.shear.plus, state.shear.minus, state.shear.packed})
+        EXPECT_NEAR(u, std::clamp(u, 0.0, 1.0), 10 * rtol);
+      state.shear.plus = 1.5;
       EXPECT_TRUE(light.update(state, 0, 1e-3).failed());
     }
 }
 
 TEST(Memory, TangentThroughShearJamming) {
-  const LightLaw light(make_law(with_memory(), Form::memory), {1e-11, 1e-14});
+  const LightLaw light(memory_law(), {1e-11, 1e-14});
   for (const State& start : {isotropic(0.6610, 0.6649), isotropic(0.70, 0.6649)})
     for (const auto& [v, e] : std::vector<std::array<double, 2>>{{0, 0.25}, {0.005, 0.2}, {0.01, 0.01}}) {
       SCOPED_TRACE(shown(start.nu) + " " + shown(v));
@@ -319,33 +300,56 @@ TEST(Memory, ThatPDriftsIsNotSaidOfIt) {
   const Path cycles = path_of(R"({"start": {"nu": 0.69}, "segments": [{"repeat": 3, "segments": [
       {"mode": "d2", "amount": 0.05}, {"mode": "d2", "amount": -0.05}]}]})");
   PredictOptions options;
-  EXPECT_THAT(predict(with_memory(), cycles, options).warnings, Contains(HasSubstr("restoring term")));
+  EXPECT_THAT(predict(thesis_with_memory(), cycles, options).warnings, Contains(HasSubstr("restoring term")));
   options.form = Form::memory;
-  EXPECT_THAT(predict(with_memory(), cycles, options).warnings, Not(Contains(HasSubstr("restoring term"))));
+  EXPECT_THAT(predict(thesis_with_memory(), cycles, options).warnings,
+              Not(Contains(HasSubstr("restoring term"))));
 }
 
-TEST(Memory, AHoldOfNothingIsNone) {
-  const Path cycle = path_of(R"({"start": {"nu": 0.69}, "segments": [
+TEST(Memory, AHoldAndAPackingOfNothingAreNone) {
+  const Path cycle = path_of(R"({"start": {"nu": 0.69, "phi_J": 0.662}, "segments": [
       {"mode": "d2", "amount": 0.3}, {"mode": "d2", "amount": -0.3}]})");
-  ParameterSet set = with_memory();
   const auto run = [&](const ParameterSet& with) {
     PredictOptions options;
     options.form = Form::memory;
-    return predict(with, cycle, options).record;
+    return predict(ParameterSet::read(Reader(with.to_json(), "written")), cycle, options).record;
   };
-  const Record without = run(set);
-  set.memory->hold.emplace().value = 0.4;
-  EXPECT_NE(run(set)["F_dev"].back(), without["F_dev"].back());
-  set.memory->hold->value = 0;
-  const auto read = ParameterSet::read(Reader(set.to_json(), "written"));
-  const Record nothing = run(read);
-  for (const char* column : {"P", "sigma_dev", "F_dev"})
-    for (std::size_t row = 0; row < nothing.rows(); ++row)
-      EXPECT_EQ(nothing[column][row], without[column][row]) << column << ' ' << row;
+  const auto expect_same = [](const Record& a, const Record& b) {
+    for (const char* column : {"P", "sigma_dev", "F_dev"})
+      for (std::size_t row = 0; row < a.rows(); ++row)
+        EXPECT_EQ(a[column][row], b[column][row]) << column << ' ' << row;
+  };
+  const ParameterSet full = thesis_with_memory();
+  const Record with_all = run(full);
+  ParameterSet set = full;
+  set.memory->hold.reset();
+  const Record no_hold = run(set);
+  EXPECT_NE(no_hold["F_dev"].back(), with_all["F_dev"].back());
+  set.memory->hold.emplace().value = 0;
+  expect_same(run(set), no_hold);
+  set = full;
+  set.memory->pack_rate.reset();
+  set.memory->phi_pack.reset();
+  const Record no_packing = run(set);
+  EXPECT_NE(no_packing["P"].back(), with_all["P"].back());
+  set.memory->phi_pack.emplace().value = 0.668;
+  EXPECT_THAT(refusal([&] { make_law(set, Form::memory); }), HasSubstr("memory.pack_rate: is missing"));
+  set.memory->pack_rate.emplace().value = 0;
+  expect_same(run(set), no_packing);
+  set.memory->pack_rate->value = 2;
+  set.memory->phi_pack.reset();
+  EXPECT_THAT(refusal([&] { make_law(set, Form::memory); }), HasSubstr("memory.phi_pack: is missing"));
+}
+
+/// A packing denser than phi_pack has nothing to pack to.
+TEST(Memory, NothingPacksBeyondItsDensity) {
+  MaterialPoint point = point_at(isotropic(0.70, 0.6690));
+  for (int i = 0; i < 20; ++i) ASSERT_FALSE(point.walk(0, i % 2 == 0 ? 0.08 : -0.08).failed());
+  EXPECT_EQ(form().packed_density(point.state()), 0.6690);
 }
 
 TEST(Memory, StartsFromPressureOrJammingDensityOrCompression) {
-  const ParameterSet set = with_memory();
+  const ParameterSet set = thesis_with_memory();
   const auto start = [&](const std::string& text) {
     return start_of(set,
                     path_of(R"({"start": )" + text + R"(, "segments": [{"mode": "d2", "amount": 0.1}]})"),
@@ -357,7 +361,7 @@ TEST(Memory, StartsFromPressureOrJammingDensityOrCompression) {
   EXPECT_EQ(fresh.history.phi_H, form().laws.memory.over.phi_SJ);
   EXPECT_LE(fresh.history.phi_max, form().laws.memory.over.phi_SJ);
   const auto pressed = start(R"({"nu": 0.7, "P": 0.017})").state;
-  EXPECT_NEAR(form().pressure_of(0.7, pressed.history.phi_H, 0.0), 0.017, 1e-12);
+  EXPECT_NEAR(form().pressure_of(0.7, pressed.history.phi_H), 0.017, 1e-12);
   EXPECT_EQ(pressed.P, 0.017);
   const auto compressed = start(R"({"nu": 0.7, "phi_max": 0.75})").state;
   EXPECT_EQ(compressed.history.phi_H, jamming_density_after(form().laws.memory.over, 0.75, 1.0));
@@ -365,7 +369,7 @@ TEST(Memory, StartsFromPressureOrJammingDensityOrCompression) {
   EXPECT_THAT(refusal([&] { start(R"({"nu": 0.7, "P": 0.017, "phi_J": 0.664})"); }),
               HasSubstr("phi_J: redundant"));
   EXPECT_THAT(refusal([] { make_law(thesis(), Form::memory); }),
-              AllOf(HasSubstr("memory.eps_c: is missing"), HasSubstr("calibrate write it"),
+              AllOf(HasSubstr("memory.eps_r: is missing"), HasSubstr("calibrate write it"),
                     HasSubstr("--form minimal does without")));
 }
 

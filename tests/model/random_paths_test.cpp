@@ -66,8 +66,14 @@ State random_state(Chance& chance, const ParameterSet& set, const Law& law) {
     Path path;
     path.start.nu = state.nu;
     state = start_of(set, path, {Form::memory, {}}).state;
-    state.memory = chance.one_in(2) ? 0 : chance.between(0, 1);
-    state.P = std::get<Memory>(law).pressure_of(state.nu, state.history.phi_H, state.memory);
+    if (chance.one_in(2)) {
+      const Memory& memory = std::get<Memory>(law);
+      const double most = std::max(state.history.phi_H, memory.laws.shear_pressure.nu_c);
+      state.shear = {chance.between(0, 1), chance.between(0, 1), chance.between(0, 1),
+                     chance.between(memory.laws.shear_pressure.nu_c, most)};
+    }
+    state.phi_J = std::get<Memory>(law).jamming_density_of(state);
+    state.P = std::get<Memory>(law).pressure_of(state.nu, state.phi_J);
     state.jammed = state.P > smallest_pressure;
     if (!state.jammed) state.P = 0;
     state.sigma_dev = chance.between(-1, 1) * saturation(laws.s_max, state.nu) * state.P;

@@ -144,7 +144,9 @@ TEST(Sensitivities, OfTheFormWithMemory) {
        set}};
   for (const Case& c : paths) {
     SCOPED_TRACE(c.name);
-    const auto names = names_of_sensitivities(c.set, path_of(c.path), {Form::memory, {}});
+    auto names = names_of_sensitivities(c.set, path_of(c.path), {Form::memory, {}});
+    // By where the contacts of steady shear begin, at which its phi_J has an infinite slope, UNI has none.
+    if (c.path.find("uni") != std::string::npos) std::erase(names, "isotropic.d2.nu_c_contacts");
     const auto s = predict_sensitivities(c.set, path_of(c.path), names, {Form::memory, 1e-8, 1e-12, 4});
     ASSERT_FALSE(s.prediction.status.failed()) << s.prediction.status.message;
     EXPECT_GE(s.events.size(), 2U);
@@ -296,7 +298,9 @@ TEST(Sensitivities, AFailureIsAStatus) {
 
 TEST(Sensitivities, SwitchedOffCostNothing) {
   // A state without them is the numbers of its own alone, and the plain walk knows of none.
-  static_assert(sizeof(State) == 8 * sizeof(double) + 8 + sizeof(Direction) + sizeof(History));
+  static_assert(sizeof(State) ==
+                7 * sizeof(double) + 8 + sizeof(Direction) + sizeof(History) + sizeof(ShearHistory));
+  static_assert(sizeof(ShearHistory) == 4 * sizeof(double));
   static_assert(sizeof(Direction) == 6 * sizeof(double) + 8 + sizeof(History));
   const Path path = path_of(R"({"start": {"nu": 0.711}, "segments": [{"mode": "d2", "amount": 0.1}]})");
   EXPECT_EQ(predict(thesis(), path).record.columns(), prediction_columns());
