@@ -146,7 +146,7 @@ TEST(Sensitivities, OfTheFormWithMemory) {
     SCOPED_TRACE(c.name);
     auto names = names_of_sensitivities(c.set, path_of(c.path), {Form::memory, {}});
     // By where the contacts of steady shear begin, at which its phi_J has an infinite slope, UNI has none.
-    if (c.path.find("uni") != std::string::npos) std::erase(names, "isotropic.d2.nu_c_contacts");
+    if (std::string(c.path).find("uni") != std::string::npos) std::erase(names, "isotropic.d2.nu_c_contacts");
     const auto s = predict_sensitivities(c.set, path_of(c.path), names, {Form::memory, 1e-8, 1e-12, 4});
     ASSERT_FALSE(s.prediction.status.failed()) << s.prediction.status.message;
     EXPECT_GE(s.events.size(), 2U);
