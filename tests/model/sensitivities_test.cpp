@@ -145,8 +145,9 @@ TEST(Sensitivities, OfTheFormWithMemory) {
   for (const Case& c : paths) {
     SCOPED_TRACE(c.name);
     auto names = names_of_sensitivities(c.set, path_of(c.path), {Form::memory, {}});
-    // By where the contacts of steady shear begin, at which its phi_J has an infinite slope, UNI has none.
-    if (std::string(c.path).find("uni") != std::string::npos) std::erase(names, "isotropic.d2.nu_c_contacts");
+    // By the row of steady shear, whose phi_J has an infinite slope where its contacts begin, UNI has none.
+    if (std::string(c.path).find("uni") != std::string::npos)
+      std::erase_if(names, [](const std::string& name) { return name.starts_with("isotropic.d2."); });
     const auto s = predict_sensitivities(c.set, path_of(c.path), names, {Form::memory, 1e-8, 1e-12, 4});
     ASSERT_FALSE(s.prediction.status.failed()) << s.prediction.status.message;
     EXPECT_GE(s.events.size(), 2U);
