@@ -132,22 +132,21 @@ void expect_derivatives(const Case& c, Form form, Terms terms = {}) {
 }
 
 /// The form with memory, through over-compression and loss of contact, and through shear jamming and back.
-/// Its rates have kinks ((G/B)_ini is cut at F_v,min), which derivatives cannot pass at 1e-12.
+/// Where volume and shear change together and pass the density at which the contacts of steady shear begin,
+/// phi_ss has an infinite slope, and CVODE gives up (docs/model.md). Its rates have kinks ((G/B)_ini is cut
+/// at F_v,min), which derivatives cannot pass at 1e-12.
 TEST(Sensitivities, OfTheFormWithMemory) {
   const ParameterSet set = thesis_with_memory();
   const Case paths[] = {
-      {"over-compression", R"({"start": {"nu": 0.69}, "segments": [{"mode": "uni", "amount": 0.03},
-          {"mode": "uni", "amount": -0.1}, {"mode": "uni", "amount": 0.15}]})",
+      {"over-compression", R"({"start": {"nu": 0.69}, "segments": [{"mode": "iso", "amount": 0.03},
+          {"mode": "iso", "amount": -0.1}, {"mode": "iso", "amount": 0.15}]})",
        set},
       {"shear jamming", R"({"start": {"nu": 0.661}, "segments": [{"mode": "d2", "amount": 0.3},
           {"mode": "d2", "amount": -0.056}, {"mode": "d2", "amount": -0.3}]})",
        set}};
   for (const Case& c : paths) {
     SCOPED_TRACE(c.name);
-    auto names = names_of_sensitivities(c.set, path_of(c.path), {Form::memory, {}});
-    // By the row of steady shear, whose phi_J has an infinite slope where its contacts begin, UNI has none.
-    if (std::string(c.path).find("uni") != std::string::npos)
-      std::erase_if(names, [](const std::string& name) { return name.starts_with("isotropic.d2."); });
+    const auto names = names_of_sensitivities(c.set, path_of(c.path), {Form::memory, {}});
     const auto s = predict_sensitivities(c.set, path_of(c.path), names, {Form::memory, 1e-8, 1e-12, 4});
     ASSERT_FALSE(s.prediction.status.failed()) << s.prediction.status.message;
     EXPECT_GE(s.events.size(), 2U);
@@ -160,7 +159,7 @@ TEST(Sensitivities, OfTheFormWithMemory) {
         double error = 0;
         for (std::size_t i = 0; i < slopes.size(); ++i)
           error = std::max(error, std::abs((up[column][i] - down[column][i]) / (2 * h) - slopes[i]));
-        EXPECT_LT(error, 1e-4 * largest(slopes) + 1e-6 * largest(up[column]) / size)
+        EXPECT_LE(error, 1e-4 * largest(slopes) + 1e-6 * largest(up[column]) / size)
             << column << " by " << name << " " << largest(slopes);
       }
     }
