@@ -21,7 +21,7 @@ struct Number {
   enum { loading, reversal, nothing } told_by;
 };
 constexpr Number numbers[] = {{"memory.alpha_P", &model::MemoryLaws::alpha_P, 1.7, Number::loading},
-                              {"memory.eps0_P", &model::MemoryLaws::eps0_P, 0.0785, Number::loading},
+                              {"memory.eps0_P", &model::MemoryLaws::eps0_P, 0.070, Number::loading},
                               {"memory.eps0_R_P", &model::MemoryLaws::eps0_R_P, 0.16, Number::reversal},
                               {"memory.eps_r", &model::MemoryLaws::eps_r, 0.145, Number::reversal},
                               {"memory.hold", &model::MemoryLaws::hold, 0.3, Number::reversal},
@@ -81,7 +81,7 @@ void add_memory_numbers(const std::filesystem::path& dir, const RecordFolder& fo
         memory.*number.member = (*fitted.parameters.memory).*number.member;
   } catch (const Error& error) {  // no D2 test that could be followed: the other fits stand
     for (const Number& number : numbers)
-      if (number.told_by == Number::loading)
+      if (number.told_by == Number::loading || (number.told_by == Number::reversal && any_reverses))
         memory.*number.member = assumed(number.usual, std::string("no D2 test tells (") + error.what() + ")");
   }
 }

@@ -146,7 +146,7 @@ struct MemoryOption {
   Range range;
 };
 const MemoryOption memory_options[] = {{"phi_cr", &MemoryLaws::phi_cr, inside(0, 1)},
-                                       {"alpha_P", &MemoryLaws::alpha_P, above(0)},
+                                       {"alpha_P", &MemoryLaws::alpha_P, above_up_to(0, 10)},
                                        {"eps0_P", &MemoryLaws::eps0_P, above(0)},
                                        {"eps0_R_P", &MemoryLaws::eps0_R_P, above(0)},
                                        {"eps_r", &MemoryLaws::eps_r, above(0)},
