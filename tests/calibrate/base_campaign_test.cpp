@@ -57,6 +57,8 @@ TEST(BaseCampaign, MemoryHoldsThePressureOfCycles) {
               error_on_cycle("0.685", seed, model::Form::coupled) / 6);
     EXPECT_LT(error_on_cycle("0.711", seed, model::Form::memory),
               error_on_cycle("0.711", seed, model::Form::coupled) / 4.5);
+    EXPECT_LT(error_on_cycle("0.685", seed, model::Form::memory), 0.0285);
+    EXPECT_LT(error_on_cycle("0.75", seed, model::Form::memory), 0.006);
     EXPECT_LT(error_on_cycle("0.75", seed, model::Form::memory),
               error_on_cycle("0.75", seed, model::Form::coupled) / 2.1);
   }
