@@ -165,7 +165,7 @@ TEST(ClosedLoops, LoopsOfStressDissipateAndCreep) {
 
 TEST(ClosedLoops, TheFormWithMemoryCreatesMore) {
   // P follows from m, which goes on while a loop closes in strain: its work is of second order in d, taken in
-  // where the volume moves first, given where the shear does.
+  // where the volume moves first, of either sign where the shear does.
   for (const double d : {1e-6, 1e-5, 1e-4, 1e-3})
     for (const bool volume_first : {true, false}) {
       Account point(Choice{Form::memory, {}}, 0.02);
