@@ -32,7 +32,8 @@ namespace grainlaw::model {
 /// History after an isotropic or other change of volume from h.nu to nu: compression beyond phi_max is a
 /// first one (M = 1 in Eq. 5.1); below it, from phi_H on, it is part of one more cycle, M growing with ln nu.
 /// A packing that jams later than M = 1 has it, as one that starts from a measured pressure may, stays as far
-/// below.
+/// below. Next to phi_SJ, where Eq. 5.5 has a first compression to nu leave more than nu, it leaves nu: the
+/// packing does not jam yet.
 template <class P, class T>
 BasicHistory<T> compressed(const BasicOverCompression<P>& o, BasicHistory<T> h, const T& nu) {
   using std::exp, std::log, std::pow;
@@ -50,7 +51,12 @@ BasicHistory<T> compressed(const BasicOverCompression<P>& o, BasicHistory<T> h, 
     }
   }
   if (h.phi_max < nu) {
-    const T before = jamming_density_after(o, h.phi_max, 1.0), first = jamming_density_after(o, nu, 1.0);
+    const auto left_by_first = [&o](const T& to) -> T {
+      const T left = jamming_density_after(o, to, 1.0);
+      if (to < left) return to;
+      return left;
+    };
+    const T before = left_by_first(h.phi_max), first = left_by_first(nu);
     h.phi_max = nu;
     if (h.phi_H < before)
       h.phi_H = h.phi_H + (first - before);

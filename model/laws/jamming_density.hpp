@@ -52,7 +52,8 @@ Meet<P, T> first_compression_to(const BasicOverCompression<P>& o, const T& phi) 
 /// d phi_J/d ln nu of a packing that jams at phi and is compressed at nu, having been compressed to phi_max
 /// >= nu: up to the density whose first compression leaves phi, compression is part of one more cycle of
 /// Eq. 5.1, M growing with ln nu; from there on it goes as first compressions do, the one passing into the
-/// other over the last 2 % of nu. 0 at nu <= phi.
+/// other over the last 2 % of nu. It is 0 at nu <= phi, begins over 0.2 % of nu, and is at most phi/2: next
+/// to phi_SJ the slope of Eq. 5.1 is infinite, and compression must not unjam.
 template <class P, class T>
 Meet<P, T> growth_by_compression(const BasicOverCompression<P>& o, const T& phi, const T& nu,
                                  const T& phi_max) {
@@ -78,7 +79,9 @@ Meet<P, T> growth_by_compression(const BasicOverCompression<P>& o, const T& phi,
       as_cycle = (limit - phi) * o.beta * x / (M * length);
     }
   }
-  const R grown = as_cycle + part * (as_first - as_cycle), above = log(nu / phi) / 0.002;
+  R grown = as_cycle + part * (as_first - as_cycle);
+  if (grown > phi / 2) grown = phi / 2;
+  const R above = log(nu / phi) / 0.002;
   if (above >= 1) return grown;
   return grown * above * above * (3 - 2 * above);
 }

@@ -178,7 +178,7 @@ double distance(const State& a, const State& b) {
 
 TEST(RandomPaths, EveryIntegratorIsSoundAndAllAgree) {
   std::map<Form, Tally> tallies;
-  int compared = 0, disagreed_to_fail = 0, missed_events = 0;
+  int compared = 0, disagreed_to_fail = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     Chance chance(seed);
     const Form form = seed <= 400 ? forms[seed % 4] : Form::memory;
@@ -212,19 +212,12 @@ TEST(RandomPaths, EveryIntegratorIsSoundAndAllAgree) {
       // Far beyond saturation, with hardly any pressure left, the law is as sensitive to its state.
       wild = wild || std::abs(fullness(law, one).s) > 1.5;
       EXPECT_LT(distance(two, one), wild ? 1e-3 : 1e-5);
-      // A point that jams, unjams and jams again within a step of the light path jams once there.
-      const bool apart = !(distance(by_light, one) < (wild ? 1e-3 : 1e-5));
-      missed_events += apart;
-      if (apart) {
-        EXPECT_EQ(form, Form::memory);
-        break;
-      }
+      EXPECT_LT(distance(by_light, one), wild ? 1e-3 : 1e-5);
       compared += !wild;
     }
   }
   EXPECT_GT(compared, 2000);
   EXPECT_LE(disagreed_to_fail, 4);
-  EXPECT_LE(missed_events, 1);  // of 200 with memory
   for (const auto& [form, tally] : tallies) {
     EXPECT_GT(tally.legs, 1500) << name_of(form);
     EXPECT_LT(tally.failed, 10) << name_of(form);
