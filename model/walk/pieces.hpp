@@ -31,7 +31,8 @@ struct Piece {
 /// Where a point passes that density.
 struct Crossing {
   double t;
-  bool rises;  ///< from below: contacts begin
+  bool rises;             ///< from below: contacts begin
+  bool of_shear = false;  ///< those of steady shear, not those of the pressure law
 };
 
 /// Pieces between `crossings` (ascending, inside (0, 1)); each ends `gap` before the next one begins, since

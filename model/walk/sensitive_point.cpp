@@ -114,12 +114,25 @@ struct BySensitiveIntegrator {
     return nu -
            plain.jamming_density_at(plain.coefficients(nu, direction), y) * (law.contacts.nu_c / law.nu_c);
   }
-  /// Where it passes 0 before the stretch or its jammed part ends: found by an integration of the values
-  /// alone.
+  /// The same of steady shear, to whose phi_J shear leads.
+  double above_contacts_of_shear(const Stretch& stretch, double t) const {
+    return stretch.nu(t) - plain.laws.shear_pressure.contacts.nu_c;
+  }
+  /// Where these pass 0 before the stretch or its jammed part ends: the first found by an integration of the
+  /// values alone.
   Status find_crossings(System system, const Stretch& stretch, const Direction& direction,
                         const double* begin, std::vector<Crossing>& crossings) const {
     if constexpr (std::is_same_v<Memory, Plain>) {
-      if (!direction.jammed) return {};
+      const double beyond = 1 + std::copysign(1e-13, stretch.eps_vol);  // there derivatives are infinite
+      const double passed =
+          std::log(plain.laws.shear_pressure.contacts.nu_c * beyond / stretch.nu_0) / stretch.eps_vol;
+      const bool passes = stretch.eps_dev != 0 && passed > 0 && passed < 1;
+      const auto sort = [&] {
+        if (passes) crossings.push_back({passed, stretch.eps_vol > 0, true});
+        std::sort(crossings.begin(), crossings.end(),
+                  [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
+      };
+      if (!direction.jammed) return sort(), Status{};
       const auto above = [&](double t, const double* y) { return above_contacts(stretch, direction, t, y); };
       system.others = {above};
       std::array<double, Plain::size> y;
@@ -133,6 +146,7 @@ struct BySensitiveIntegrator {
         t = arrival.t;
         crossings.push_back({t, rises});
       }
+      sort();
     }
     return {};
   }
@@ -160,10 +174,14 @@ struct BySensitiveIntegrator {
         move(gap);
         for (std::size_t i = 0; i < first.size(); ++i) at.s[i] += gap * first[i];
       } else {
-        const double high = above_contacts(stretch, direction, from, at.y.data()),
-                     alpha = plain.laws.pressure.contacts.alpha;
+        const auto above = [&](double t) {
+          return to.of_shear ? above_contacts_of_shear(stretch, t)
+                             : above_contacts(stretch, direction, t, at.y.data());
+        };
+        const auto& law = to.of_shear ? plain.laws.shear_pressure : plain.laws.pressure;
+        const double high = above(from), alpha = law.contacts.alpha;
         move(gap / 2);
-        const double low = above_contacts(stretch, direction, from + gap / 2, at.y.data());
+        const double low = above(from + gap / 2);
         if (!(high > low && low > 0) || !rates(from + gap / 2, second)) return false;
         move(gap / 2);
         // What is left of the way, in t, as the volume fraction above the contacts has it.
@@ -174,6 +192,7 @@ struct BySensitiveIntegrator {
           at.s[i] += a * gap + b * std::pow(h, alpha) / alpha;
         }
       }
+      if (to.of_shear) return true;  // where that is does not hang on the variables
       std::array<Dual<size>, size> y;
       for (std::size_t i = 0; i < size; ++i) y[i] = Dual<size>(at.y[i], i);
       const Dual<size> above = above_contacts(stretch, direction, to.t, y.data());

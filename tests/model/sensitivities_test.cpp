@@ -131,15 +131,14 @@ void expect_derivatives(const Case& c, Form form, Terms terms = {}) {
   EXPECT_GT(worst[3], 10 * least) << "no rounding error: is this a difference at all?";
 }
 
-/// The form with memory, through over-compression and loss of contact, and through shear jamming and back.
-/// Where volume and shear change together and pass the density at which the contacts of steady shear begin,
-/// phi_ss has an infinite slope, and CVODE gives up (docs/model.md). Its rates have kinks ((G/B)_ini is cut
-/// at F_v,min), which derivatives cannot pass at 1e-12.
+/// The form with memory, through over-compression and loss of contact, where the contacts of isotropic
+/// packings and of steady shear end and begin with infinite slopes, and through shear jamming and back. Its
+/// rates have kinks ((G/B)_ini is cut at F_v,min), which derivatives cannot pass at 1e-12.
 TEST(Sensitivities, OfTheFormWithMemory) {
   const ParameterSet set = thesis_with_memory();
   const Case paths[] = {
-      {"over-compression", R"({"start": {"nu": 0.69}, "segments": [{"mode": "iso", "amount": 0.03},
-          {"mode": "iso", "amount": -0.1}, {"mode": "iso", "amount": 0.15}]})",
+      {"over-compression", R"({"start": {"nu": 0.69}, "segments": [{"mode": "uni", "amount": 0.03},
+          {"mode": "uni", "amount": -0.1}, {"mode": "uni", "amount": 0.15}]})",
        set},
       {"shear jamming", R"({"start": {"nu": 0.661}, "segments": [{"mode": "d2", "amount": 0.3},
           {"mode": "d2", "amount": -0.056}, {"mode": "d2", "amount": -0.3}]})",
