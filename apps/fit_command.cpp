@@ -21,7 +21,7 @@ namespace grainlaw::apps {
 namespace {
 
 struct Arguments {
-  std::string dir, output, fits, memory;
+  std::string dir, output, fits, memory, reversals;
 };
 
 namespace fs = std::filesystem;
@@ -57,8 +57,12 @@ int run(const Arguments& arguments) {
   const auto lock = lock_of(arguments);
   if (!arguments.memory.empty() && !fs::is_directory(arguments.memory))
     throw Error("", "--memory", "must be a directory with over_compression.csv, got " + arguments.memory);
-  const calibrate::FitOutput fitted = calibrate::fit_records(dir, find_thesis(size_ratio_of_records(dir)), {},
-                                                             memory_sources(arguments.memory));
+  if (!arguments.reversals.empty() && !fs::is_directory(arguments.reversals))
+    throw Error("", "--reversals", "must be a directory of records, got " + arguments.reversals);
+  calibrate::MemorySources memory = memory_sources(arguments.memory);
+  memory.reversals = arguments.reversals;
+  const calibrate::FitOutput fitted =
+      calibrate::fit_records(dir, find_thesis(size_ratio_of_records(dir)), {}, memory);
   write_file(output, fitted.parameters.to_json().dump(2) + "\n");
   if (arguments.output.empty() && arguments.fits.empty())
     fitted.write_account(dir);
@@ -87,10 +91,17 @@ Action add_fit(CLI::App& program) {
                    "directory with tables of memory of the same material (over_compression.csv, "
                    "shear_jamming.csv, relaxed.csv, tapped.csv), read as tests of role memory are")
       ->type_name("DIR");
+  command
+      ->add_option(
+          "--reversals", arguments->reversals,
+          "records of D2 tests that turn their shear round, of the same material: to those of role fit "
+          "the form with memory fits what a reversal does (default: to those in DIR)")
+      ->type_name("DIR");
   command->footer(
       "Examples:\n"
       "  grainlaw fit out/quick -o parameters.json --fits fits.json\n"
-      "  grainlaw fit data/records/base --memory data/memory -o parameters.json");
+      "  grainlaw fit data/records/base --memory data/memory \\\n"
+      "    --reversals data/records/small-cycles -o parameters.json");
   return [arguments] { return run(*arguments); };
 }
 

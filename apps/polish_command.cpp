@@ -1,6 +1,7 @@
 // grainlaw polish: chosen parameters fitted to whole measured paths, after the fits law by law.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 struct Arguments {
   std::string parameters, dir, output, account, rows, form;
   std::vector<std::string> names, modes{"d2", "d3"};
+  std::vector<std::string> columns{calibrate::path_columns.begin(), calibrate::path_columns.end()};
   std::string weights = "scatter";
   bool brief = false;
 };
@@ -76,6 +78,19 @@ std::string held_out_table(const Json& held_out) {
   return text;
 }
 
+/// `columns` as what to compare.
+calibrate::ColumnsCompared compared(const std::vector<std::string>& columns) {
+  const auto& known = calibrate::path_columns;
+  calibrate::ColumnsCompared compared{};
+  for (const std::string& column : columns) {
+    const auto at = std::find(known.begin(), known.end(), column);
+    if (at == known.end())
+      throw Error("", "--columns", "must be of P, sigma_dev, F_dev, got \"" + column + "\"");
+    compared[static_cast<std::size_t>(at - known.begin())] = true;
+  }
+  return compared;
+}
+
 int run(const Arguments& arguments) {
   const fs::path dir = arguments.dir;
   if (!fs::is_directory(dir)) throw Error(dir.string(), "", "no such directory");
@@ -86,6 +101,7 @@ int run(const Arguments& arguments) {
   options.names = arguments.names;
   options.form = model::choice_of(arguments.form);
   options.selection.modes = arguments.modes;
+  options.compared = compared(arguments.columns);
   if (arguments.weights != "scatter" && arguments.weights != "size")
     throw Error("", "--weights", "must be one of scatter, size, got \"" + arguments.weights + "\"");
   if (arguments.weights == "size") options.selection.weights = calibrate::PathWeights::size;
@@ -135,6 +151,10 @@ Action add_polish(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--modes", arguments->modes, "tests to read")
       ->type_name("MODE[,MODE...]")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--columns", arguments->columns, "what is compared")
+      ->type_name("COLUMN[,COLUMN...]")
       ->delimiter(',')
       ->capture_default_str();
   command

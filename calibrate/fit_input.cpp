@@ -251,4 +251,12 @@ std::size_t last_unloading_leg(const TestRecord& test) {
   return test.legs.size();
 }
 
+bool reverses(const TestRecord& test) {
+  const auto shears = [&](const Leg& leg, double sign) {
+    return sign * (leg.eps_dev[1] - leg.eps_dev[0]) > 0;
+  };
+  return std::any_of(test.legs.begin(), test.legs.end(), [&](const Leg& leg) { return shears(leg, 1); }) &&
+         std::any_of(test.legs.begin(), test.legs.end(), [&](const Leg& leg) { return shears(leg, -1); });
+}
+
 }  // namespace grainlaw::calibrate

@@ -67,5 +67,7 @@ std::size_t first_shear_leg(const TestRecord& test);
 /// The index after the last leg that goes on from there in the same mode and direction.
 std::size_t end_of_first_loading(const TestRecord& test);
 std::size_t last_unloading_leg(const TestRecord& test);
+/// Whether it shears both ways.
+bool reverses(const TestRecord& test);
 
 }  // namespace grainlaw::calibrate

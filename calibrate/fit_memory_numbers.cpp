@@ -12,21 +12,25 @@ namespace grainlaw::calibrate {
 
 namespace {
 
+/// What tells a number: whole D2 tests; P of those that turn their shear round, or F_dev (sigma_dev there is
+/// that of Eq. 4.16, which errs by far more than P, and would bend the numbers of P).
+enum class ToldBy { loading, pressure, fabric, nothing };
+
 /// What the form has besides Eqs. 5.1 and 5.5: a number, what it is where nothing tells (that of w = 3, N =
-/// 9261: docs/model.md, Memory), and what tells it.
+/// 9261: docs/model.md, Memory), and what tells it. phi_pack and pack_rate cannot be told apart.
 struct Number {
   const char* name;
   std::optional<model::Parameter> model::MemoryLaws::*member;
   double usual;
-  enum { loading, reversal, nothing } told_by;
+  ToldBy told_by;
 };
-constexpr Number numbers[] = {{"memory.alpha_P", &model::MemoryLaws::alpha_P, 1.7, Number::loading},
-                              {"memory.eps0_P", &model::MemoryLaws::eps0_P, 0.070, Number::loading},
-                              {"memory.eps0_R_P", &model::MemoryLaws::eps0_R_P, 0.16, Number::reversal},
-                              {"memory.eps_r", &model::MemoryLaws::eps_r, 0.145, Number::reversal},
-                              {"memory.hold", &model::MemoryLaws::hold, 0.3, Number::reversal},
-                              {"memory.pack_rate", &model::MemoryLaws::pack_rate, 2, Number::nothing},
-                              {"memory.phi_pack", &model::MemoryLaws::phi_pack, 0.668, Number::nothing}};
+constexpr Number numbers[] = {{"memory.alpha_P", &model::MemoryLaws::alpha_P, 1.7, ToldBy::loading},
+                              {"memory.eps0_P", &model::MemoryLaws::eps0_P, 0.070, ToldBy::loading},
+                              {"memory.eps0_R_P", &model::MemoryLaws::eps0_R_P, 0.16, ToldBy::pressure},
+                              {"memory.eps_r", &model::MemoryLaws::eps_r, 0.13, ToldBy::pressure},
+                              {"memory.phi_pack", &model::MemoryLaws::phi_pack, 0.668, ToldBy::pressure},
+                              {"memory.hold", &model::MemoryLaws::hold, 0.22, ToldBy::fabric},
+                              {"memory.pack_rate", &model::MemoryLaws::pack_rate, 2, ToldBy::nothing}};
 
 model::Parameter assumed(double value, const std::string& why) {
   model::Parameter parameter;
@@ -36,14 +40,6 @@ model::Parameter assumed(double value, const std::string& why) {
   return parameter;
 }
 
-bool reverses(const TestRecord& test) {
-  const auto shears = [&](const Leg& leg, double sign) {
-    return sign * (leg.eps_dev[1] - leg.eps_dev[0]) > 0;
-  };
-  return std::any_of(test.legs.begin(), test.legs.end(), [&](const Leg& leg) { return shears(leg, 1); }) &&
-         std::any_of(test.legs.begin(), test.legs.end(), [&](const Leg& leg) { return shears(leg, -1); });
-}
-
 /// Whether the account of a fit says that the tests determine this number.
 bool is_told(const Json& account, const std::string& name) {
   for (const Json& parameter : account.at("parameters"))
@@ -51,39 +47,51 @@ bool is_told(const Json& account, const std::string& name) {
   return false;
 }
 
-}  // namespace
-
-void add_memory_numbers(const std::filesystem::path& dir, const RecordFolder& folder,
-                        model::ParameterSet& parameters) {
-  if (!parameters.memory || !parameters.moduli || !parameters.shear || !parameters.isotropic.contains("d2"))
-    return;
+/// Fits the numbers that such tests tell to those of `folder`; what is not determined is assumed.
+void fit_numbers(const RecordFolder& folder, ToldBy told_by, model::ParameterSet& parameters) {
   PolishOptions options;
   options.selection.modes = {"d2"};
+  options.selection.reversed_only = told_by != ToldBy::loading;
+  if (told_by == ToldBy::pressure) options.compared = {true, false, false};
+  if (told_by == ToldBy::fabric) options.compared = {false, false, true};
   options.form.form = model::Form::memory;
   options.trade_off = options.profiles = options.held_out = false;
-  const bool any_reverses = std::any_of(folder.tests.begin(), folder.tests.end(), [](const TestRecord& test) {
-    return test.role == Role::fit && test.mode == "d2" && reverses(test);
-  });
+  for (const Number& number : numbers)
+    if (number.told_by == told_by) options.names.emplace_back(number.name);
   auto& memory = *parameters.memory;
-  for (const Number& number : numbers) {
-    const bool asked =
-        number.told_by == Number::loading || (number.told_by == Number::reversal && any_reverses);
-    if (asked) options.names.emplace_back(number.name);
-    memory.*number.member =
-        assumed(number.usual, asked                                ? "the D2 tests do not tell"
-                              : number.told_by == Number::reversal ? "no D2 test is reversed"
-                                                                   : "no test is asked for it");
-  }
+  const auto assume = [&](const std::string& why) {
+    for (const Number& number : numbers)
+      if (number.told_by == told_by) memory.*number.member = assumed(number.usual, why);
+  };
+  assume("the D2 tests do not tell");
   try {
-    const PolishOutput fitted = polish(dir, parameters, options);
+    const PolishOutput fitted = polish(folder, parameters, options);
     for (const Number& number : numbers)
       if (is_told(fitted.account, number.name))
         memory.*number.member = (*fitted.parameters.memory).*number.member;
   } catch (const Error& error) {  // no D2 test that could be followed: the other fits stand
-    for (const Number& number : numbers)
-      if (number.told_by == Number::loading || (number.told_by == Number::reversal && any_reverses))
-        memory.*number.member = assumed(number.usual, std::string("no D2 test tells (") + error.what() + ")");
+    assume(std::string("no D2 test tells (") + error.what() + ")");
   }
+}
+
+}  // namespace
+
+void add_memory_numbers(const RecordFolder& folder, const RecordFolder& reversals,
+                        model::ParameterSet& parameters) {
+  if (!parameters.memory || !parameters.moduli || !parameters.shear || !parameters.isotropic.contains("d2"))
+    return;
+  for (const Number& number : numbers)
+    (*parameters.memory).*number.member =
+        assumed(number.usual,
+                number.told_by == ToldBy::nothing ? "no test is asked for it" : "no D2 test is reversed");
+  fit_numbers(folder, ToldBy::loading, parameters);
+  const RecordFolder& reversed = reversals.tests.empty() ? folder : reversals;
+  if (std::none_of(reversed.tests.begin(), reversed.tests.end(), [](const TestRecord& test) {
+        return test.role == Role::fit && test.mode == "d2" && reverses(test);
+      }))
+    return;
+  fit_numbers(reversed, ToldBy::fabric, parameters);  // first: F_dev says how far a shear is opposed
+  fit_numbers(reversed, ToldBy::pressure, parameters);
 }
 
 }  // namespace grainlaw::calibrate

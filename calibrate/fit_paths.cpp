@@ -40,7 +40,8 @@ model::ParameterSet polished(const PathProblem& problem, const PathFit& fit) {
   for (std::size_t k = 0; k < problem.names().size(); ++k) {
     model::Parameter& p = set.parameter(problem.names()[k]);
     if (fit.blind.numbers.contains(k)) continue;  // as it was
-    p.stderr_ = fit.errors.errors[k];
+    p.stderr_.reset();
+    if (std::isfinite(fit.errors.errors[k])) p.stderr_ = fit.errors.errors[k];
     p.source = "fit";
     p.note = "whole paths, from " + to_text(problem.start()[k]);
     if (problem.at_bound(k, fit.best.values[k])) p.note += "; rests on the bound of the law";
@@ -71,10 +72,14 @@ std::vector<std::string> polished_by_default(const model::ParameterSet& set, con
 
 PolishOutput polish(const std::filesystem::path& dir, const model::ParameterSet& start,
                     const PolishOptions& options) {
-  const RecordFolder folder = read_records(dir);
+  return polish(read_records(dir), start, options);
+}
+
+PolishOutput polish(const RecordFolder& folder, const model::ParameterSet& start,
+                    const PolishOptions& options) {
   std::vector<LeftOut> left_out;
   std::vector<PathSeries> series = path_series(folder, options.selection, left_out);
-  if (series.empty()) throw Error(dir.string(), "", "no record of a mode and role that a polish reads");
+  if (series.empty()) throw Error(folder.name, "", "no record of a mode and role that a polish reads");
   model::PredictOptions predict;
   predict.form = options.form.form;
   predict.terms = options.form.terms;
@@ -83,7 +88,7 @@ PolishOutput polish(const std::filesystem::path& dir, const model::ParameterSet&
   predict.method = model::Method::adams;  // with sensitivities the faster of the two on these paths
   const auto names = options.names.empty() ? polished_by_default(start, options.form) : options.names;
   if (names.empty()) throw Error(start.file, "", "has none of the parameters that a polish fits by default");
-  const PathProblem problem(start, names, std::move(series), predict);
+  const PathProblem problem(start, names, std::move(series), predict, options.compared);
 
   PathFit fit;
   fit.blind.reasons.resize(names.size());
@@ -99,7 +104,8 @@ PolishOutput polish(const std::filesystem::path& dir, const model::ParameterSet&
     if (const auto after = problem.evaluate(fit.best.values, alike, true, &why)) {
       fit.errors = path_errors(problem, *after, fit.blind.numbers);
       out.parameters = polished(problem, fit);
-      if (options.trade_off) fit.trade_off = sweep(problem, fit.best, fit.blind.numbers);
+      if (options.trade_off && options.compared == all_columns)
+        fit.trade_off = sweep(problem, fit.best, fit.blind.numbers);
       for (std::size_t k = 0; options.profiles && k < names.size(); ++k)
         fit.profiles.push_back(fit.blind.numbers.contains(k)
                                    ? Profile{}

@@ -16,9 +16,10 @@ namespace grainlaw::calibrate {
 struct PolishOptions {
   std::vector<std::string> names;  ///< parameters to fit; empty: polished_by_default()
   PathSelection selection;
+  ColumnsCompared compared = all_columns;
   model::Choice form;     ///< and terms past the thesis
   double rtol = 1e-6;     ///< of the integrations
-  bool trade_off = true;  ///< sweep the weight of fabric against stress
+  bool trade_off = true;  ///< sweep the weight of fabric against stress, where both are compared
   bool profiles = true;   ///< profile likelihoods
   bool held_out = true;   ///< compare predictions of tests of role predict, before and after
 };
@@ -38,6 +39,8 @@ struct PolishOutput {
 /// or none of the modes, and for names the set lacks. A law that does not come along a path is an outcome:
 /// `account["exit"]` begins with "failed".
 PolishOutput polish(const std::filesystem::path& dir, const model::ParameterSet& start,
+                    const PolishOptions& options = {});
+PolishOutput polish(const RecordFolder& folder, const model::ParameterSet& start,
                     const PolishOptions& options = {});
 
 }  // namespace grainlaw::calibrate

@@ -13,8 +13,7 @@ namespace grainlaw::calibrate {
 namespace {
 
 /// The material of all records; predictions would be for none of them if they differed.
-Material common_material(const RecordFolder& folder) {
-  const TestRecord& first = folder.tests.front();
+void check_material(const RecordFolder& folder, const TestRecord& first) {
   const Json material = first.material.to_json();
   for (const TestRecord& test : folder.tests) {
     const Json other = test.material.to_json();
@@ -25,7 +24,6 @@ Material common_material(const RecordFolder& folder) {
                       ", since one parameter set is one material, got " + other.at(key).dump());
     }
   }
-  return first.material;
 }
 
 void set_row(model::ShearLaws& shear, ShearQuantity quantity,
@@ -107,10 +105,14 @@ void FitOutput::write_account(const std::filesystem::path& dir) const {
 
 FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::path& thesis,
                       const Selection& selection, const MemorySources& memory) {
-  const RecordFolder folder = read_records(dir);
+  const RecordFolder folder = read_records(dir),
+                     reversals = memory.reversals.empty() ? RecordFolder() : read_records(memory.reversals);
+  const TestRecord& first = folder.tests.front();
+  check_material(folder, first);
+  check_material(reversals, first);
   FitOutput out;
   out.parameters.name = folder.name;
-  out.parameters.material = common_material(folder);
+  out.parameters.material = first.material;
   const Reference reference = reference_of(thesis, out.parameters.material),
                   near_jamming = reference_of(memory.near_jamming, out.parameters.material);
   const Account account = fit_all(folder, reference, near_jamming, read_tables(memory.tables), selection);
@@ -131,7 +133,7 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
   if (!account.relaxed.empty()) out.relaxed = relaxed_table(account.relaxed);
   if (!account.tapped.empty()) out.tapped = tapped_table(account.tapped);
   out.parameters.closure = {"iso", out.parameters.isotropic.contains("d2") ? "d2" : "iso", false};
-  add_memory_numbers(dir, folder, out.parameters);
+  add_memory_numbers(folder, reversals, out.parameters);
   out.fits = account.to_json();
   out.fits["checks"] = physics_checks(account);
   return out;

@@ -26,10 +26,13 @@ struct FitOutput {
 /// What the fits of groups memory and near_jamming read besides the records.
 struct MemorySources {
   /// Tables 5.1 and 5.2 of the thesis as a parameter set, used as `thesis` is; empty: none.
-  std::filesystem::path near_jamming;
+  std::filesystem::path near_jamming = {};
   /// A directory with over_compression.csv and, where they are there, shear_jamming.csv, relaxed.csv and
   /// tapped.csv, of the same material: they count as tests of role memory. Empty: none.
-  std::filesystem::path tables;
+  std::filesystem::path tables = {};
+  /// A directory of records, D2 tests of role fit that turn their shear round, of the same material: for the
+  /// numbers of reversals in the form with memory. Empty: those of the records themselves.
+  std::filesystem::path reversals = {};
 };
 
 /// Fits all records of `dir`: the output directory of a campaign (campaign.json says each test's role), or

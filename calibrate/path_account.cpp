@@ -46,6 +46,7 @@ std::string undetermined(const PathProblem& problem, const PathFit& fit, std::si
   if (fit.errors.errors.empty()) return "nothing could be fitted";
   if (!fit.blind.reasons[k].empty()) return fit.blind.reasons[k];
   if (problem.at_bound(k, fit.best.values[k])) return "it rests on the bound of the law";
+  if (!std::isfinite(fit.errors.errors[k])) return "where the fit ends its standard error cannot be told";
   if (fit.errors.errors[k] > std::abs(fit.best.values[k])) return "its standard error exceeds its value";
   if (fit.profiles.empty()) return "";
   const Profile& profile = fit.profiles[k];
@@ -72,10 +73,14 @@ Json sentences(const PathProblem& problem, const PathFit& fit) {
                                   : "not determined: " + problem.names()[k] + ": " + reason);
   }
   const Misfits left = misfits_of(problem, fit.best.values);
-  if (left.stress > follows || left.fabric > follows)
-    list.push_back("the law does not follow the paths within their errors (residuals of " +
-                   shown(left.stress) + " errors in stress, " + shown(left.fabric) +
-                   " in fabric): values make up for what its form lacks, and standard errors leave that out");
+  if (left.stress > follows || left.fabric > follows) {
+    std::string residuals;
+    if (std::isfinite(left.stress)) residuals = shown(left.stress) + " errors in stress";
+    if (std::isfinite(left.fabric))
+      residuals += (residuals.empty() ? "" : ", ") + shown(left.fabric) + " errors in fabric";
+    list.push_back("the law does not follow the paths within their errors (residuals of " + residuals +
+                   "): values make up for what its form lacks, and standard errors leave that out");
+  }
   for (const Pair& pair : entangled_pairs(problem, fit))
     list.push_back("entangled: " + pair.a + " and " + pair.b + " (correlation " + shown(pair.correlation) +
                    ")");
@@ -107,14 +112,15 @@ Json data(const PathProblem& problem, const PathFit& fit) {
   const std::vector<double>* both[] = {&problem.start(), &fit.best.values};
   for (const PathSeries& series : problem.series()) {
     Json entry{{"test", series.test}, {"seeds", series.seeds}, {"rows", series.samples.size()}};
-    for (std::size_t q = 0; q < path_columns.size(); ++q)
+    for (const std::size_t q : problem.columns())
       entry["columns"][path_columns[q]] = {{"error", series.error[q]},
                                            {"error_from", series.from_scatter[q] ? "scatter" : "assumed"}};
     for (int i = 0; i < 2; ++i) {
-      std::vector<double> residuals(path_columns.size() * series.samples.size());
+      std::vector<double> residuals(problem.columns().size() * series.samples.size());
       const bool walked =
           problem.evaluate_series(series, *both[i], {1, 1, 1}, residuals.data(), nullptr, nullptr);
-      for (std::size_t q = 0, row = 0; q < path_columns.size(); ++q) {
+      std::size_t row = 0;
+      for (const std::size_t q : problem.columns()) {
         std::vector<double> predicted;
         for (const double measured : series.measured[q])
           predicted.push_back(measured + series.error[q] * residuals[row++]);
@@ -137,16 +143,19 @@ Misfits misfits_of(const PathProblem& problem, const std::vector<double>& values
   const auto residuals = problem.evaluate(values, {1, 1, 1}, false);
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   if (!residuals) return {nothing, nothing};
-  double stress = 0, fabric = 0, rows = 0;
+  struct {
+    double squares = 0, rows = 0;
+  } stress, fabric;
   Eigen::Index row = 0;
   for (const PathSeries& series : problem.series())
-    for (std::size_t q = 0; q < path_columns.size(); ++q) {
+    for (const std::size_t q : problem.columns()) {
       const auto n = static_cast<Eigen::Index>(series.samples.size());
-      (q == fabric_column ? fabric : stress) += residuals->values.segment(row, n).squaredNorm();
+      auto& sum = q == fabric_column ? fabric : stress;
+      sum.squares += residuals->values.segment(row, n).squaredNorm();
+      sum.rows += static_cast<double>(n);
       row += n;
-      if (q == fabric_column) rows += static_cast<double>(n);
     }
-  return {std::sqrt(stress / (2 * rows)), std::sqrt(fabric / rows)};
+  return {std::sqrt(stress.squares / stress.rows), std::sqrt(fabric.squares / fabric.rows)};
 }
 
 Json account_of(const PathProblem& problem, const PathFit& fit, const std::vector<LeftOut>& left_out) {

@@ -14,7 +14,7 @@
 namespace grainlaw::calibrate {
 
 /// Root mean square of (prediction - measured)/error over all rows: P and sigma_dev together, and F_dev. NaN
-/// where the law does not come along.
+/// where the law does not come along, or nothing of the kind is compared.
 struct Misfits {
   double stress = 0, fabric = 0;
 };

@@ -16,14 +16,12 @@ namespace {
 /// An open end of a range is kept off by this part of the parameter's size.
 constexpr double off_the_end = 1e-6;
 
-std::size_t count_rows(const PathSeries& series) { return path_columns.size() * series.samples.size(); }
-
 /// One series as Ceres takes it; every parameter is a block of its own, in units of its scale.
 class SeriesCost : public ceres::CostFunction {
  public:
   SeriesCost(const PathProblem& problem, const PathSeries& series, const ColumnWeights& weights)
       : problem_(problem), series_(series), weights_(weights) {
-    set_num_residuals(static_cast<int>(count_rows(series)));
+    set_num_residuals(static_cast<int>(problem.columns().size() * series.samples.size()));
     mutable_parameter_block_sizes()->assign(problem.names().size(), 1);
   }
 
@@ -53,8 +51,11 @@ std::string exit_in_words(const ceres::Solver::Summary& summary) {
 }  // namespace
 
 PathProblem::PathProblem(const model::ParameterSet& set, std::vector<std::string> names,
-                         std::vector<PathSeries> series, const model::PredictOptions& options)
+                         std::vector<PathSeries> series, const model::PredictOptions& options,
+                         const ColumnsCompared& compared)
     : set_(set), names_(std::move(names)), series_(std::move(series)), options_(options) {
+  for (std::size_t q = 0; q < compared.size(); ++q)
+    if (compared[q]) columns_.push_back(q);
   const auto known = set_.named();
   for (const std::string& name : names_) {
     start_.push_back(set_.parameter(name).value);
@@ -82,7 +83,7 @@ bool PathProblem::at_bound(std::size_t k, double value) const {
 std::vector<std::size_t> PathProblem::run_lengths() const {
   std::vector<std::size_t> lengths;
   for (const PathSeries& series : series_)
-    lengths.insert(lengths.end(), path_columns.size(), series.samples.size());
+    lengths.insert(lengths.end(), columns_.size(), series.samples.size());
   return lengths;
 }
 
@@ -104,7 +105,7 @@ bool PathProblem::evaluate_series(const PathSeries& series, const std::vector<do
   }
   if (prediction.status.failed()) return fail(prediction.status.message);
   std::size_t row = 0;
-  for (std::size_t q = 0; q < path_columns.size(); ++q) {
+  for (const std::size_t q : columns_) {
     const double factor = weights[q] / series.error[q];
     const auto& predicted = prediction.record[path_columns[q]];
     for (std::size_t i = 0; i < predicted.size(); ++i)
@@ -123,7 +124,7 @@ std::optional<PathResiduals> PathProblem::evaluate(const std::vector<double>& va
                                                    const ColumnWeights& weights, bool with_jacobian,
                                                    std::string* why) const {
   std::size_t rows = 0;
-  for (const PathSeries& series : series_) rows += count_rows(series);
+  for (const PathSeries& series : series_) rows += columns_.size() * series.samples.size();
   PathResiduals out;
   out.values.resize(static_cast<Eigen::Index>(rows));
   if (with_jacobian)
@@ -135,7 +136,7 @@ std::optional<PathResiduals> PathProblem::evaluate(const std::vector<double>& va
     if (!evaluate_series(series, values, weights, &out.values(row), with_jacobian ? columns.data() : nullptr,
                          why))
       return std::nullopt;
-    row += static_cast<Eigen::Index>(count_rows(series));
+    row += static_cast<Eigen::Index>(columns_.size() * series.samples.size());
   }
   return out;
 }

@@ -18,7 +18,8 @@ namespace grainlaw::calibrate {
 /// Weights of P, sigma_dev and F_dev beside 1/error.
 using ColumnWeights = std::array<double, 3>;
 
-/// Residuals weight (prediction - measured)/error of all rows, series by series, column by column.
+/// Residuals weight (prediction - measured)/error of all rows, series by series, column by column of those
+/// compared.
 struct PathResiduals {
   Eigen::VectorXd values;
   Eigen::MatrixXd jacobian;  ///< by value/scale; empty where it was not asked for
@@ -35,10 +36,12 @@ class PathProblem {
  public:
   /// Throws Error for a name that the set lacks.
   PathProblem(const model::ParameterSet& set, std::vector<std::string> names, std::vector<PathSeries> series,
-              const model::PredictOptions& options);
+              const model::PredictOptions& options, const ColumnsCompared& compared = all_columns);
 
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<PathSeries>& series() const { return series_; }
+  /// Indices into path_columns of what is compared, in their order.
+  const std::vector<std::size_t>& columns() const { return columns_; }
   const std::vector<double>& start() const { return start_; }
   /// Natural sizes: |start|, 1 where that is 0.
   const std::vector<double>& scales() const { return scales_; }
@@ -67,6 +70,7 @@ class PathProblem {
   std::vector<std::string> names_;
   std::vector<PathSeries> series_;
   model::PredictOptions options_;
+  std::vector<std::size_t> columns_;
   std::vector<double> start_, scales_, low_, high_;
 };
 

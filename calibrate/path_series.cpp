@@ -97,7 +97,7 @@ std::vector<PathSeries> path_series(const RecordFolder& folder, const PathSelect
   std::map<std::string, std::vector<const TestRecord*>> tests;
   for (const TestRecord& record : folder.tests) {
     const bool wanted =
-        record.role == selection.role &&
+        record.role == selection.role && (!selection.reversed_only || reverses(record)) &&
         std::find(selection.modes.begin(), selection.modes.end(), record.mode) != selection.modes.end();
     if (!wanted) continue;
     auto& seeds = tests[record.test];

@@ -12,8 +12,11 @@
 
 namespace grainlaw::calibrate {
 
-/// What a fit of whole paths compares, in this order.
+/// What a fit of whole paths may compare, in this order.
 inline constexpr std::array<const char*, 3> path_columns{"P", "sigma_dev", "F_dev"};
+/// Which of them it does.
+using ColumnsCompared = std::array<bool, 3>;
+inline constexpr ColumnsCompared all_columns{true, true, true};
 inline constexpr std::size_t fabric_column = 2;
 
 /// One test.
@@ -40,6 +43,7 @@ struct PathSelection {
   Role role = Role::fit;
   std::size_t rows_per_leg = 30;  ///< closer at the beginning of a leg, where everything happens
   PathWeights weights = PathWeights::scatter;
+  bool reversed_only = false;  ///< only tests that turn their shear round
 };
 
 /// Tests of `folder`, with those that are left out and why appended to `left_out`.

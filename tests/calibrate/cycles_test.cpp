@@ -1,7 +1,7 @@
 // Cycles of D2 between +-0.1 near jamming and between +-0.4 of a third packing, and of UNI through jamming
 // and back. Errors of the forms with the numbers of data/grains/w-3.json, whose exponent and strain of
-// Eq. 5.3 are of first loadings; what a reversal does (eps0_R_P, eps_r, pack_rate, phi_pack) is of D2 cycles,
-// these included.
+// Eq. 5.3 are of first loadings; what a reversal does (eps0_R_P, eps_r, phi_pack, hold) is fitted to P and
+// F_dev of the small cycles here, and no number to the others.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,12 +46,12 @@ Errors errors_of(const std::string& test, const std::string& form,
 
 /// Three cycles of +-0.1, along which P of grains sinks: a reversal gives back what shear took, denser.
 TEST(SmallCycles, MemoryFollowsThePressure) {
-  for (const auto& [nu, gain] : {std::pair{"0.685", 5.0}, {"0.711", 2.1}}) {
+  for (const auto& [nu, gain] : {std::pair{"0.685", 6.5}, {"0.711", 2.5}}) {
     const std::string test = std::string("small-cycles/records/d2-0.1-") + nu + "-s4";
     SCOPED_TRACE(test);
     const Errors coupled = errors_of(test, "coupled"), memory = errors_of(test, "memory");
     EXPECT_LT(memory.P, coupled.P / gain);
-    EXPECT_LT(memory.P, 0.018);
+    EXPECT_LT(memory.P, 0.0145);
     EXPECT_LT(memory.sigma_dev, coupled.sigma_dev);
   }
 }
@@ -72,14 +72,14 @@ TEST(SmallCycles, AReversalHoldsTheFabric) {
   for (const std::string nu : {"0.685", "0.711"}) {
     const std::string test = "small-cycles/records/d2-0.1-" + nu + "-s4";
     const Errors free = errors_of(test, "memory", [](model::MemoryLaws& memory) { memory.hold.reset(); });
-    EXPECT_LT(errors_of(test, "memory").F_dev, 0.78 * free.F_dev) << nu;
+    EXPECT_LT(errors_of(test, "memory").F_dev, 0.8 * free.F_dev) << nu;
     EXPECT_NEAR(free.F_dev, errors_of(test, "coupled").F_dev, 1e-6) << nu;  // both are Eq. 4.16
   }
 }
 
 TEST(SmallCycles, MemoryPassesTinyOnes) {
   const std::string test = "small-cycles/records/d2-tiny-0.711-s4";
-  EXPECT_LT(errors_of(test, "memory").P, errors_of(test, "coupled").P / 2);
+  EXPECT_LT(errors_of(test, "memory").P, errors_of(test, "coupled").P / 3);
 }
 
 TEST(UniCycles, MemoryHoldsThePressure) {
@@ -88,7 +88,7 @@ TEST(UniCycles, MemoryHoldsThePressure) {
     SCOPED_TRACE(test);
     const Errors coupled = errors_of(test, "coupled"), memory = errors_of(test, "memory"),
                  minimal = errors_of(test, model::minimal_name);
-    EXPECT_LT(memory.P, 0.0125);
+    EXPECT_LT(memory.P, 0.0115);
     EXPECT_GT(coupled.P, 3 * memory.P);
     EXPECT_GT(minimal.P, 2 * memory.P);
   }
@@ -127,7 +127,7 @@ TEST(ThirdCycle, TwoPackingsSayLessOfAThirdThanMemory) {
     memory += errors_of(packings()[i], "memory").P / 3;
   }
   EXPECT_NEAR(others, 0.0058, 1e-4);
-  EXPECT_NEAR(memory, 0.0046, 1e-4);
+  EXPECT_NEAR(memory, 0.0047, 1e-4);
 }
 
 }  // namespace

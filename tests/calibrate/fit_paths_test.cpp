@@ -91,6 +91,26 @@ TEST(FitPaths, TheJacobianIsTheDerivativeOfTheResiduals) {
   }
 }
 
+TEST(FitPaths, ComparesOnlyWhatItIsAsked) {
+  const auto series = several(thesis());
+  const PathProblem all(moved(four, 1.1), four, series, options());
+  const PathProblem fabric(moved(four, 1.1), four, series, options(), {false, false, true});
+  const auto whole = all.evaluate(all.start(), {1, 2, 3}, true),
+             part = fabric.evaluate(all.start(), {1, 2, 3}, true);
+  ASSERT_TRUE(whole && part);
+  ASSERT_EQ(part->values.size() * 3, whole->values.size());
+  EXPECT_EQ(fabric.run_lengths().size(), series.size());
+  Eigen::Index row = 0;
+  for (const PathSeries& s : series) {
+    const auto n = static_cast<Eigen::Index>(s.samples.size());
+    EXPECT_EQ(part->values.segment(row, n), whole->values.segment(3 * row + 2 * n, n));
+    EXPECT_EQ(part->jacobian.middleRows(row, n), whole->jacobian.middleRows(3 * row + 2 * n, n));
+    row += n;
+  }
+  EXPECT_TRUE(std::isnan(misfits_of(fabric, fabric.start()).stress));
+  EXPECT_EQ(misfits_of(fabric, fabric.start()).fabric, misfits_of(all, all.start()).fabric);
+}
+
 TEST(FitPaths, SaysWhatPathsCannotTell) {
   // Without volume change A2 does nothing; at one density only Q_v exp(-alpha (nu/nu_c - 1)) shows.
   const std::vector<std::string> names{"moduli.a_II", "moduli.a_I", "shear.beta_F.Q_v", "shear.beta_F.alpha"};

@@ -127,6 +127,26 @@ TEST(MixedHistory, CompressionGivesBackWhatShearTook) {
   EXPECT_GT(thrice.law, once.law + 5e-4);
 }
 
+/// The table of docs/model.md, Volume after shear.
+TEST(MixedHistory, JammingDensitiesUnloadingAfterUnloading) {
+  struct Cell {
+    int segment;
+    double grains, law;
+  };
+  const std::pair<const char*, std::vector<Cell>> rows[] = {
+      {"small-0.68", {{0, 0.6601, 0.6599}, {2, 0.6610, 0.6606}, {4, 0.6611, 0.6611}, {6, 0.6614, 0.6615}}},
+      {"dip-0.68", {{0, 0.6600, 0.6599}, {2, 0.6603, 0.6605}, {4, 0.6606, 0.6608}}},
+      {"up-0.68", {{1, 0.6634, 0.6621}, {3, 0.6646, 0.6630}, {5, 0.6649, 0.6638}}},
+      {"large-0.68", {{0, 0.6601, 0.6599}, {2, 0.6652, 0.6637}, {4, 0.6664, 0.6651}, {6, 0.6668, 0.6662}}}};
+  for (const auto& [test, cells] : rows)
+    for (const Cell& cell : cells) {
+      SCOPED_TRACE(std::string(test) + ", segment " + std::to_string(cell.segment));
+      const Mean mean = mean_of("far-0.68", test, cell.segment);
+      EXPECT_NEAR(mean.grains, cell.grains, 6e-5);
+      EXPECT_NEAR(mean.law, cell.law, 6e-5);
+    }
+}
+
 /// Relative L2 error of P, mean over the packings.
 TEST(MixedHistory, TheLawFollowsThePressure) {
   const std::map<std::string, double> errors{{"small-0.68", 0.065},
