@@ -22,13 +22,13 @@ inline const OverCompression& over() { return form().laws.memory.over; }
 inline double memory_in(const State& state) { return form().memory(state.shear); }
 
 /// An isotropic point of jamming density phi_J that has seen phi_max.
-inline State isotropic(double nu, double phi_J = 0.6649, double phi_max = 0.82) {
+inline State isotropic(double nu, double phi_J = 0.6649, double phi_max = 0.82, const Memory& of = form()) {
   State state;
   state.nu = nu;
   state.phi_J = phi_J;
   state.history = {phi_J, phi_max, nu};
-  state.shear.steady = form().steady_density(nu);
-  state.P = form().pressure_of(nu, phi_J);
+  state.shear.steady = of.steady_density(nu);
+  state.P = of.pressure_of(nu, phi_J);
   state.jammed = state.P > smallest_pressure;
   if (!state.jammed) state.P = 0;
   return state;

@@ -10,6 +10,7 @@
 #include "grainlaw/model/forms/law.hpp"
 #include "grainlaw/model/light/light_law.hpp"
 #include "grainlaw/model/parameters.hpp"
+#include "memory_fixture.hpp"
 
 namespace grainlaw::model {
 namespace {
@@ -19,19 +20,9 @@ const Law& own_law() {
       make_law(ParameterSet::load(GRAINLAW_DATA_DIR "/grains/w-3-memory.json"), Form::memory);
   return law;
 }
-const Memory& own_form() { return std::get<Memory>(own_law()); }
-
 /// An isotropic packing that jams at phi_H and has been compressed to phi_max.
 State packing(double nu, double phi_H, double phi_max) {
-  State state;
-  state.nu = nu;
-  state.phi_J = phi_H;
-  state.history = {phi_H, phi_max, nu};
-  state.shear.steady = own_form().steady_density(nu);
-  state.P = own_form().pressure_of(nu, phi_H);
-  state.jammed = state.P > smallest_pressure;
-  if (!state.jammed) state.P = 0;
-  return state;
+  return isotropic(nu, phi_H, phi_max, std::get<Memory>(own_law()));
 }
 
 void shear(State& state, double eps_dev) {
