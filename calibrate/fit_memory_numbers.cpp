@@ -76,6 +76,10 @@ void fit_numbers(const RecordFolder& folder, ToldBy told_by, model::ParameterSet
 
 }  // namespace
 
+bool tells_of_reversals(const TestRecord& test) {
+  return test.role == Role::fit && test.mode == "d2" && reverses(test);
+}
+
 void add_memory_numbers(const RecordFolder& folder, const RecordFolder& reversals,
                         model::ParameterSet& parameters) {
   if (!parameters.memory || !parameters.moduli || !parameters.shear || !parameters.isotropic.contains("d2"))
@@ -86,10 +90,7 @@ void add_memory_numbers(const RecordFolder& folder, const RecordFolder& reversal
                 number.told_by == ToldBy::nothing ? "no test is asked for it" : "no D2 test is reversed");
   fit_numbers(folder, ToldBy::loading, parameters);
   const RecordFolder& reversed = reversals.tests.empty() ? folder : reversals;
-  if (std::none_of(reversed.tests.begin(), reversed.tests.end(), [](const TestRecord& test) {
-        return test.role == Role::fit && test.mode == "d2" && reverses(test);
-      }))
-    return;
+  if (std::none_of(reversed.tests.begin(), reversed.tests.end(), tells_of_reversals)) return;
   fit_numbers(reversed, ToldBy::fabric, parameters);  // first: F_dev says how far a shear is opposed
   fit_numbers(reversed, ToldBy::pressure, parameters);
 }

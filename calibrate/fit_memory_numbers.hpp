@@ -7,6 +7,10 @@
 
 namespace grainlaw::calibrate {
 
+/// Whether it is one of those that the numbers of a reversal are fitted to: D2 of role fit that turns its
+/// shear round.
+bool tells_of_reversals(const TestRecord& test);
+
 /// Gives group memory of `parameters` what that form needs, where it can be taken at all: fitted to the D2
 /// tests of role fit in `folder`, what a reversal does to those in `reversals` that turn their shear round
 /// (where it is empty: of `folder`), and assumed (with a note that says why) where these do not tell.

@@ -1,5 +1,7 @@
 #include "grainlaw/calibrate/fit_records.hpp"
 
+#include <algorithm>
+
 #include "grainlaw/calibrate/fit_account.hpp"
 #include "grainlaw/calibrate/fit_checks.hpp"
 #include "grainlaw/calibrate/fit_memory_numbers.hpp"
@@ -110,6 +112,10 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
   const TestRecord& first = folder.tests.front();
   check_material(folder, first);
   check_material(reversals, first);
+  if (!memory.reversals.empty() &&
+      std::none_of(reversals.tests.begin(), reversals.tests.end(), tells_of_reversals))
+    throw Error(memory.reversals.string(), "",
+                "must hold d2 tests of role fit that turn their shear round, found none");
   FitOutput out;
   out.parameters.name = folder.name;
   out.parameters.material = first.material;

@@ -39,7 +39,8 @@ struct MemorySources {
 /// any directory of records (all of role fit). `thesis` is the thesis's parameter set: its values stand
 /// beside the fitted ones if it is of the same w, replace what the data leave open, and fill the groups
 /// moduli and memory; with an empty path there are none of these. Throws Error for a directory without
-/// records, a record that cannot be read, records of different materials, tables that cannot be read.
+/// records, a record that cannot be read, records of different materials, tables that cannot be read, and for
+/// `memory.reversals` without such a test.
 FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::path& thesis = {},
                       const Selection& selection = {}, const MemorySources& memory = {});
 

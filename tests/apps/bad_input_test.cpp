@@ -175,6 +175,12 @@ TEST_F(BadInput, AnOutputThatIsAnInput) {
       refuses(run({"fit", "r", "-o", "f.json", "--fits", "no/f.json"}), {"--fits: must lie in a directory"}));
   EXPECT_TRUE(refuses(run({"fit", "r", "-o", "f.json", "--memory", "no"}),
                       {"--memory: must be a directory with over_compression.csv, got no"}));
+  EXPECT_TRUE(refuses(run({"fit", "r", "-o", "f.json", "--reversals", "no"}),
+                      {"--reversals: must be a directory of records, got no"}));
+  EXPECT_TRUE(refuses(run({"fit", "r", "-o", "f.json", "--reversals", "r"}),
+                      {"r: must hold d2 tests of role fit that turn their shear round, found none"}));
+  EXPECT_TRUE(refuses(run({"polish", "p.json", "r", "-o", "f.json", "--columns", "P,s_dev"}),
+                      {"--columns: must be of P, sigma_dev, F_dev, got \"s_dev\""}));
   EXPECT_EQ(read("r/one/record.csv"), record);
   EXPECT_EQ(read("p.json"), parameters);
   EXPECT_FALSE(fs::exists(folder / "f.json"));

@@ -1,5 +1,6 @@
 // The records of the base campaign that stand in data/records: 9261 grains, three packings. Tables 2.1
 // and 2.2 of the thesis, cell by cell: thesis_tables_test.cpp.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 #include "grainlaw/calibrate/fit_records.hpp"
 #include "grainlaw/calibrate/predict_records.hpp"
 #include "grainlaw/dem/scene/scene.hpp"
+#include "grainlaw/element/error.hpp"
 #include "grainlaw/element/record.hpp"
 #include "grainlaw/model/predict.hpp"
 #include "same_parameters.hpp"
@@ -26,6 +28,17 @@ const FitOutput& fitted() {
 TEST(BaseCampaign, TheSetInTheTreeIsTheirs) {
   test::expect_same_parameters(fitted().parameters,
                                model::ParameterSet::load(GRAINLAW_DATA_DIR "/grains/w-3.json"));
+}
+
+TEST(BaseCampaign, ReversalsThatAreNoneAreRefused) {
+  try {
+    fit_records(GRAINLAW_DATA_DIR "/records/base", {}, {},
+                {.reversals = GRAINLAW_DATA_DIR "/records/volumetric"});
+    FAIL() << "took them";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("volumetric"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("d2 tests of role fit that turn their shear round"));
+  }
 }
 
 TEST(BaseCampaign, EveryCheckHolds) {
