@@ -39,51 +39,74 @@ Meet<P, T> jamming_density_after(const BasicOverCompression<P>& o, const T& phi_
   return o.phi_SJ - (limit - o.phi_SJ) * expm1(-pow(M / o.mu, o.beta));
 }
 
+/// What one compression leaves of the way from phi_SJ to the limit (M = 1 in Eq. 5.1).
+template <class P>
+P share_of_first(const BasicOverCompression<P>& o) {
+  using std::expm1, std::pow;
+  return -expm1(-pow(1 / o.mu, o.beta));
+}
+
 /// The largest volume fraction whose first compression leaves phi (M = 1 in Eq. 5.1); phi_SJ for phi at or
-/// below it.
+/// below it. `share` is share_of_first().
+template <class P, class T>
+Meet<P, T> first_compression_to(const BasicOverCompression<P>& o, const std::type_identity_t<P>& share,
+                                const T& phi) {
+  using std::pow;
+  if (phi <= o.phi_SJ) return o.phi_SJ;
+  return o.phi_SJ * (1 + pow((phi - o.phi_SJ) / (o.alpha_max * share), 1 / o.alpha_phi));
+}
 template <class P, class T>
 Meet<P, T> first_compression_to(const BasicOverCompression<P>& o, const T& phi) {
-  using std::expm1, std::pow;
-  if (phi <= o.phi_SJ) return o.phi_SJ;
-  const P share = -expm1(-pow(1 / o.mu, o.beta));
-  return o.phi_SJ * (1 + pow((phi - o.phi_SJ) / (o.alpha_max * share), 1 / o.alpha_phi));
+  return first_compression_to(o, share_of_first(o), phi);
 }
 
 /// d phi_J/d ln nu of a packing that jams at phi and is compressed at nu, having been compressed to phi_max
 /// >= nu: up to the density whose first compression leaves phi, compression is part of one more cycle of
 /// Eq. 5.1, M growing with ln nu; from there on it goes as first compressions do, the one passing into the
 /// other over the last 2 % of nu. It is 0 at nu <= phi, begins over 0.2 % of nu, and is at most phi/2: next
-/// to phi_SJ the slope of Eq. 5.1 is infinite, and compression must not unjam.
+/// to phi_SJ the slope of Eq. 5.1 is infinite, and compression must not unjam. `share` is share_of_first(),
+/// `limit` jamming_density_limit() of phi_max.
 template <class P, class T>
-Meet<P, T> growth_by_compression(const BasicOverCompression<P>& o, const T& phi, const T& nu,
-                                 const T& phi_max) {
-  using std::expm1, std::log, std::pow;
+Meet<P, T> growth_by_compression(const BasicOverCompression<P>& o, const std::type_identity_t<P>& share,
+                                 const T& limit, const T& phi, const T& nu, const T& phi_max) {
+  using std::log, std::pow;
   using R = Meet<P, T>;
+  constexpr double passing = 0.02, beginning = 0.002;  // of ln nu
   if (nu <= phi || phi <= o.phi_SJ) return 0.0;
-  const R first = first_compression_to(o, phi), to_go = log(first / nu) / 0.02;
+  const R first = first_compression_to(o, share, phi);
+  R to_go = 1.0;  // and beyond
+  if (first < nu * (1 + 1.02 * passing)) to_go = log(first / nu) / passing;
   R as_cycle = 0.0, as_first = 0.0, part = 0.0;
   if (to_go < 1) {
-    const P share = -expm1(-pow(1 / o.mu, o.beta));
     as_first = o.alpha_max * share * o.alpha_phi * pow(nu / o.phi_SJ - 1, o.alpha_phi - 1) * nu / o.phi_SJ;
     part = 1.0;
     if (to_go > 0) part = (1 - to_go) * (1 - to_go) * (1 + 2 * to_go);
   }
   if (to_go > 0) {
-    R reached = first;
-    if (phi_max < reached) reached = phi_max;
-    const R limit = jamming_density_limit(o, reached);
-    if (phi < limit) {
-      const R x = -log((limit - phi) / (limit - o.phi_SJ)), M = o.mu * pow(x, 1 / o.beta);
+    const bool less = phi_max < first;  // phi is what several compressions have left
+    const R reached = less ? R(phi_max) : first, most = less ? R(limit) : o.phi_SJ + (phi - o.phi_SJ) / share;
+    if (phi < most) {
+      const R x = -log((most - phi) / (most - o.phi_SJ));
+      R M = 1.0;
+      if (less) M = o.mu * pow(x, 1 / o.beta);
       R length = log(reached / phi);
       if (length < 1e-3) length = 1e-3;  // next to phi_max all cycles are short
-      as_cycle = (limit - phi) * o.beta * x / (M * length);
+      as_cycle = (most - phi) * o.beta * x / (M * length);
     }
   }
   R grown = as_cycle + part * (as_first - as_cycle);
   if (grown > phi / 2) grown = phi / 2;
-  const R above = log(nu / phi) / 0.002;
+  if (nu > phi * (1 + 1.02 * beginning)) return grown;
+  const R above = log(nu / phi) / beginning;
   if (above >= 1) return grown;
   return grown * above * above * (3 - 2 * above);
+}
+template <class P, class T>
+Meet<P, T> growth_by_compression(const BasicOverCompression<P>& o, const T& phi, const T& nu,
+                                 const T& phi_max) {
+  using R = Meet<P, T>;
+  return growth_by_compression<P, R>(o, share_of_first(o), jamming_density_limit(o, phi_max), phi, nu,
+                                     phi_max);
 }
 
 /// Where `holds` turns from true to false between low and high.

@@ -132,14 +132,20 @@ P jamming_density(const BasicPressureCurve<P>& p) {
   return p.nu_c;
 }
 
+/// Eq. 2.14 with its e = ln(nu/nu_c) > 0.
+template <class P, class T, class E>
+Meet<P, T> pressure_at_strain(const BasicPressureCurve<P>& p, const T& nu, const E& e) {
+  const auto C = coordination(p.contacts, at_least_isostatic(p.contacts, nu));
+  return p.p0 * nu * C / p.nu_c * e * (1 - p.gamma_p * e);
+}
+
 /// Eq. 2.14: P* = p0 (nu C/nu_c) e (1 - gamma_p e), e = ln(nu/nu_c); over k* = k/(2<r>), compression
 /// positive. Rises from 0 at jamming_density(); C is the one of at_least_isostatic().
 template <class P, class T>
 Meet<P, T> pressure(const BasicPressureCurve<P>& p, const T& nu) {
   using std::log;
   if (nu <= jamming_density(p)) return 0.0;
-  const auto e = log(nu / p.nu_c), C = coordination(p.contacts, at_least_isostatic(p.contacts, nu));
-  return p.p0 * nu * C / p.nu_c * e * (1 - p.gamma_p * e);
+  return pressure_at_strain(p, nu, log(nu / p.nu_c));
 }
 
 /// dP*/d ln nu of Eq. 2.14; 0 at and below jamming_density().

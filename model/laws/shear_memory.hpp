@@ -49,15 +49,18 @@ Meet<U, A> memory_of(const U& plus, const U& minus, const A& alpha) {
   return 1 - (1 - remembered(plus, alpha)) * (1 - remembered(minus, alpha));
 }
 
-/// du/dx where 1 - a = exp(-x^alpha): [-ln(1 - a)/a]^((alpha - 1)/alpha) (1 - a), 1 at a = 0 and 0 at a = 1.
-template <class U, class A>
-Meet<U, A> filling_rate(const U& u, const A& alpha) {
+/// du/dx where 1 - a = exp(-x^alpha), of a = remembered(u): [-ln(1 - a)/a]^((alpha - 1)/alpha) (1 - a), 1 at
+/// a = 0 and 0 at a = 1.
+template <class R, class A>
+R filling_rate_of(const R& a, const A& alpha) {
   using std::log, std::pow;
-  using R = Meet<U, A>;
-  const R a = remembered(u, alpha);
   if (a >= 1) return 0.0;
   const R ratio = a < 1e-5 ? R(1 + a / 2 + a * a / 3) : R(-log(1 - a) / a);
   return pow(ratio, R(1 - 1 / alpha)) * (1 - a);
+}
+template <class U, class A>
+Meet<U, A> filling_rate(const U& u, const A& alpha) {
+  return filling_rate_of(remembered(u, alpha), alpha);
 }
 
 /// -eps_r du/d eps of the direction that is sheared against: 1, and about u = smooth_end less, to end at 0
@@ -65,8 +68,8 @@ Meet<U, A> filling_rate(const U& u, const A& alpha) {
 inline constexpr double smooth_end = 0.03;
 template <class U>
 U emptying_rate(const U& u) {
-  using std::pow;
-  return u / pow(u * u + smooth_end * smooth_end, 0.5);
+  using std::sqrt;
+  return u / sqrt(u * u + smooth_end * smooth_end);
 }
 
 /// How far the fabric opposes a shear that begins where |1 - q F_dev/F_max| = S_F_I: 0 from isotropy, 1 after

@@ -35,6 +35,27 @@ enum class LightMethod {
   rosenbrock       ///< RODAS 4(3)
 };
 
+/// What the rates of a form depend on besides the variables, and whatever of it a form knows of them: its
+/// here(), or the coefficients themselves.
+template <class F, class C, class S, class Y>
+auto here_of(const F& form, const C& c, const BasicDirection<S>& direction, const Y* y) {
+  if constexpr (requires { form.here(c, direction, y); })
+    return form.here(c, direction, y);
+  else
+    return c;
+}
+
+/// What the coefficients of a form along a stretch have in common: its common(), or nothing.
+struct NothingCommon {};
+template <class F, class C, class T>
+auto common_of(const F& form, const C& at_start, const BasicStretch<T>& stretch,
+               const BasicDirection<T>& direction) {
+  if constexpr (requires { form.common(at_start, stretch, direction); })
+    return form.common(at_start, stretch, direction);
+  else
+    return NothingCommon{};
+}
+
 /// The rates of a form along a stretch. Coefficients are taken once where the volume rests; where only its
 /// slopes move, they do so in proportion to t; else they are taken anew at every stage.
 template <class F, class T>
@@ -42,48 +63,81 @@ class StretchRate {
  public:
   using Coefficients =
       decltype(std::declval<F>().coefficients(std::declval<T>(), std::declval<BasicDirection<T>>()));
+  using Here = decltype(here_of(std::declval<F>(), std::declval<Coefficients>(),
+                                std::declval<BasicDirection<T>>(), std::declval<const T*>()));
 
+  using Common = decltype(common_of(std::declval<F>(), std::declval<Coefficients>(),
+                                    std::declval<BasicStretch<T>>(), std::declval<BasicDirection<T>>()));
+
+  StretchRate(const F& form, const BasicStretch<T>& stretch, const BasicDirection<T>& direction)
+      : StretchRate(form, stretch, direction, form.coefficients(stretch.nu_0, direction)) {}
   StretchRate(const F& form, const BasicStretch<T>& stretch, const BasicDirection<T>& direction,
               const Coefficients& at_start)
-      : form_(form), stretch_(stretch), direction_(direction), at_start_(at_start) {
+      : form_(form),
+        stretch_(stretch),
+        direction_(direction),
+        at_start_(at_start),
+        common_(common_of(form, at_start, stretch, direction)) {
     if constexpr (!std::is_same_v<T, double>)
-      if (rests()) at_end_ = form.coefficients(stretch.nu(T(1.0)), direction);
+      if (rests()) at_end_ = coefficients(T(1.0));
   }
 
+  Here here(const T& t, const T* y) const {
+    return with_coefficients(t, [&](const auto& c) { return here_of(form_, c, direction_, y); });
+  }
   template <class X, class Y>
   bool operator()(const X& t, const Y* y, Y* dydt) const {
-    if (!rests()) return rate_at(form_, stretch_, direction_, t, y, dydt);
-    if constexpr (std::is_same_v<T, double>)
-      return form_.rate(at_start_, stretch_, direction_, y, dydt);
-    else
-      return form_.rate(F::between(at_start_, at_end_, t), stretch_, direction_, y, dydt);
+    return with_coefficients(t, [&](const auto& c) { return form_.rate(c, stretch_, direction_, y, dydt); });
+  }
+  /// Of what is there.
+  bool from(const Here& here, const T* y, T* dydt) const {
+    return form_.rate(here, stretch_, direction_, y, dydt);
+  }
+  /// The same, which tells what is there.
+  bool operator()(const T& t, const T* y, T* dydt, Here& here) const {
+    here = this->here(t, y);
+    return from(here, y, dydt);
   }
   /// What reaches 0 where the stretch is to be left.
+  T event(const Here& here, const T* y) const { return form_.distance_to_event(here, direction_, y); }
   template <class X, class Y>
-  auto event(const X& t, const Y* y) const {
-    if constexpr (requires { F::goes_on_unjammed; })
-      if (!rests())
-        return form_.distance_to_event(form_.coefficients(stretch_.nu(t), direction_), direction_, y);
-    return form_.distance_to_event(at_start_, direction_, y);
+  auto event_at(const X& t, const Y* y) const {
+    return with_coefficients(t, [&](const auto& c) { return form_.distance_to_event(c, direction_, y); });
   }
   /// How much of what changes along the whole stretch would be made up for in it, at the rate with which the
   /// point relaxes or its volume leaves the neighbourhood of jamming.
-  double relaxations(const T* y) const {
-    double sum = form_.relaxation(at_start_, stretch_, direction_, y);
+  double relaxations(const Here& here, const T* y) const {
+    double sum = form_.relaxation(here, stretch_, direction_, y);
     if (!rests())
       sum += std::abs(value(stretch_.eps_vol)) /
              (std::abs(std::log(value(stretch_.nu_0) / value(form_.unjamming_density()))) + 1e-6);
     return sum;
   }
-  std::array<double, F::size> scales(const T* y) const { return form_.scales(at_start_, y); }
+  std::array<double, F::size> scales(const Here& here, const T* y) const { return form_.scales(here, y); }
 
  private:
   bool rests() const { return value(stretch_.eps_vol) == 0; }
+  template <class X>
+  auto coefficients(const X& t) const {
+    if constexpr (std::is_same_v<Common, NothingCommon>)
+      return form_.coefficients(stretch_.nu(t), direction_);
+    else
+      return form_.coefficients(stretch_.nu(t), common_);
+  }
+  template <class X, class Use>
+  auto with_coefficients(const X& t, Use use) const {
+    if (!rests()) return use(coefficients(t));
+    if constexpr (std::is_same_v<T, double>)
+      return use(at_start_);
+    else
+      return use(F::between(at_start_, at_end_, t));
+  }
 
   const F& form_;
   const BasicStretch<T>& stretch_;
   const BasicDirection<T>& direction_;
   Coefficients at_start_, at_end_;
+  Common common_;
 };
 
 /// Carries variables along a stretch.
@@ -94,15 +148,22 @@ class LightRun {
   using Variables = std::array<T, n>;
   using Rate = StretchRate<F, T>;
 
-  LightRun(const Rate& rate, const Variables& begin, Tolerance tolerance, LightMethod method)
-      : rate_(rate), y_(begin), tolerance_(tolerance), method_(method) {}
+  using Here = typename Rate::Here;
+
+  /// From the variables `begin`; `here` is what is there, if that is known.
+  LightRun(const Rate& rate, const Variables& begin, Tolerance tolerance, LightMethod method,
+           const Here* here = nullptr)
+      : rate_(rate), y_(begin), tolerance_(tolerance), method_(method) {
+    if (!here || !rate.from(*here, begin.data(), start_rate_.data())) return;
+    start_here_ = *here;
+    known_ = true;
+  }
 
   enum class End { there, event, failed };
-  /// Goes on to t = `to` in (t(), 1], or to where `event(y)` falls to 0. Its sign at the start must be > 0.
-  template <class Event>
-  End advance(double to, Event event) {
+  /// Goes on to t = `to` in (t(), 1], or to where the event comes.
+  End advance(double to) {
     for (int steps = 0; t_ < to; ++steps) {
-      if (steps == most_steps) return End::failed;
+      if (steps == most_steps || !known()) return End::failed;
       const double left = to - t_;
       double h = step_ > 0 ? std::min(step_, left) : left;
       const LightMethod method = method_ == LightMethod::automatic ? choose(h) : method_;
@@ -112,11 +173,10 @@ class LightRun {
       const auto error = try_step(method, h, trial);
       if (!error || *error > 1) {
         step_ = h * (error ? std::max(0.2, 0.9 * std::pow(*error, -1.0 / order(method))) : 0.25);
-        known_ = known_ && method != LightMethod::rosenbrock;  // the rate at the start holds
         if (t_ + step_ <= t_) return End::failed;
         continue;
       }
-      if (!(event(t_ + h, trial.y) > 0)) return find_event(method, h, event);
+      if (passes_event(trial)) return find_event(method, h);
       accept(method, h, trial);
       if (h == left) t_ = to;
       const double growth = *error > 0 ? 0.9 * std::pow(*error, -1.0 / order(method)) : 5;
@@ -130,6 +190,8 @@ class LightRun {
 
   double t() const { return t_; }
   const Variables& y() const { return y_; }
+  /// What is there, if that is known.
+  const Here* here() const { return known_ ? &start_here_ : nullptr; }
 
  private:
   static constexpr int most_steps = 100'000;
@@ -151,69 +213,78 @@ class LightRun {
     return method == LightMethod::explicit_third ? light_safety_third : light_safety;
   }
 
+  /// Whether the rate is defined here; then start_rate_ and start_here_ are those at (t_, y_).
+  bool known() {
+    if (!known_) known_ = rate_(T(t_), y_.data(), start_rate_.data(), start_here_);
+    return known_;
+  }
+
   LightMethod choose(double h) const {
-    const double all = rate_.relaxations(y_.data());
+    const double all = rate_.relaxations(start_here_, y_.data());
     if (!(all * (1 - t_) < stiff)) return LightMethod::rosenbrock;
     const double z = all * h;
     return z * z * z < 12 * light_safety_third * tolerance_.rtol ? LightMethod::explicit_third
                                                                  : LightMethod::explicit_fifth;
   }
   double first_step(double left) const {
-    const double lambda = rate_.relaxations(y_.data());
+    const double lambda = rate_.relaxations(start_here_, y_.data());
     return lambda > 0 ? std::min(left, 2 * std::pow(light_safety * tolerance_.rtol, 1. / 6) / lambda) : left;
   }
 
-  /// The error over what is allowed; nothing where a stage is not defined.
+  /// The error over what is allowed; nothing where a stage is not defined. end_here_ becomes what is at the
+  /// end, with an explicit pair end_rate_ the rate there.
   std::optional<double> try_step(LightMethod method, double h, Trial<T, n>& trial) {
     bool defined = false;
-    if (method == LightMethod::rosenbrock) {
+    if (method == LightMethod::rosenbrock)
       defined = rosenbrock_step(rate_, y_, t_, h, trial);
-    } else {
-      if (!known_) {
-        if (!rate_(T(t_), y_.data(), start_rate_.data())) return std::nullopt;
-        known_ = true;
-      }
-      const auto rate = [&](double c, const T* y, T* dydt) { return rate_(T(t_ + c * h), y, dydt); };
-      defined = method == LightMethod::explicit_third ? explicit_step<BogackiShampine>(rate, h, trial)
-                                                      : explicit_step<DormandPrince>(rate, h, trial);
-    }
+    else if (method == LightMethod::explicit_third)
+      defined = explicit_step<BogackiShampine>(h, trial);
+    else
+      defined = explicit_step<DormandPrince>(h, trial);
     if (!defined) return std::nullopt;
-    const auto scale = rate_.scales(y_.data());
+    const auto scale = rate_.scales(start_here_, y_.data());
     double worst = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const double error = std::abs(value(trial.error[i])) / (tolerance_.rtol * scale[i] + tolerance_.atol);
       if (!std::isfinite(error) || !std::isfinite(value(trial.y[i]))) return std::nullopt;
       worst = std::max(worst, error);
     }
+    if (method == LightMethod::rosenbrock) end_here_ = rate_.here(T(t_ + h), trial.y.data());
     return worst / safety(method);
   }
 
-  template <class Pair, class StageRate>
-  bool explicit_step(const StageRate& rate, double h, Trial<T, n>& trial) {
+  template <class Pair>
+  bool explicit_step(double h, Trial<T, n>& trial) {
     std::array<std::array<T, n>, Pair::stages> k;
     k[0] = start_rate_;
+    const auto rate = [&](double c, const T* y, T* dydt) { return rate_(T(t_ + c * h), y, dydt, end_here_); };
     if (!trial_step<Pair>(rate, y_, h, k, trial)) return false;
     end_rate_ = k[Pair::stages - 1];
     return true;
+  }
+
+  bool passes_event(const Trial<T, n>& trial) const {
+    return !(value(rate_.event(end_here_, trial.y.data())) > 0);
   }
 
   void accept(LightMethod method, double h, const Trial<T, n>& trial) {
     y_ = trial.y;
     t_ += h;
     known_ = method != LightMethod::rosenbrock;
-    if (known_) start_rate_ = end_rate_;
+    if (!known_) return;
+    start_rate_ = end_rate_;
+    start_here_ = end_here_;
   }
 
   /// A step over h passes the event: the longest step that does not is taken, and slopes of the time at which
   /// it comes go into the variables by the caller.
-  template <class Event>
-  End find_event(LightMethod method, double h, Event event) {
+  End find_event(LightMethod method, double h) {
     double low = 0, high = h;
     Trial<T, n> trial, best;
     for (int i = 0; i < 100 && high - low > 1e-16 * h; ++i) {
       const double middle = 0.5 * (low + high);
       const auto error = try_step(method, middle, trial);
-      if (error && event(t_ + middle, trial.y) > 0) {
+      if (error && !passes_event(trial)) {
         low = middle;
         best = trial;
       } else {
@@ -231,8 +302,9 @@ class LightRun {
   LightMethod method_;
   double t_ = 0;
   double step_ = 0;     // proposed; 0: none yet
-  bool known_ = false;  // start_rate_ is the rate at (t_, y_)
+  bool known_ = false;  // start_rate_ and start_here_ are those at (t_, y_)
   Variables start_rate_, end_rate_;
+  Here start_here_, end_here_;
 };
 
 /// Numbers of slope along a path that ends or is looked at where t has slopes of its own: y(t) with those of
@@ -257,35 +329,45 @@ struct Light {
   template <class F, class T, class NextSample, class Visit>
   Reached<T> operator()(const F& form, BasicState<T>& state, const BasicStretch<T>& stretch,
                         NextSample next_sample, Visit visit) const {
-    if constexpr (F::size == 0)
+    if constexpr (F::size == 0) {
       return Closed{}(form, state, stretch, next_sample, visit);
-    else
-      return run(form, state, stretch, form.coefficients(stretch.nu_0, state.direction), next_sample, visit);
+    } else {
+      const BasicState<T> begin = state;
+      const StretchRate<F, T> rate(form, stretch, begin.direction);
+      LightRun<F, T> run(rate, form.variables(begin), tolerance, method);
+      return go(form, state, begin, stretch, rate, run, next_sample, visit);
+    }
   }
 
-  /// The same where the coefficients at the start are known.
-  template <class F, class T, class Coefficients, class NextSample, class Visit>
-  Reached<T> run(const F& form, BasicState<T>& state, const BasicStretch<T>& stretch, const Coefficients& c,
-                 NextSample next_sample, Visit visit) const {
-    const BasicState<T> begin = state;
-    const StretchRate<F, T> rate(form, stretch, begin.direction, c);
-    LightRun<F, T> run(rate, form.variables(begin), tolerance, method);
+  /// The run from `begin` over the whole stretch.
+  template <class F, class T, class NextSample, class Visit>
+  Reached<T> go(const F& form, BasicState<T>& state, const BasicState<T>& begin,
+                const BasicStretch<T>& stretch, const StretchRate<F, T>& rate, LightRun<F, T>& run,
+                NextSample next_sample, Visit visit) const {
     for (bool last = false; !last;) {
       T t = next_sample();
       last = !(t <= 1);
       if (last) t = 1.0;
-      const auto end =
-          run.advance(value(t), [&](double at, const auto& y) { return value(rate.event(at, y.data())); });
+      const auto end = run.advance(value(t));
       using End = typename LightRun<F, T>::End;
       if (end == End::failed)
         return {{Status::Code::failed, "the step became too small, or steps too many"}, run.t()};
       if (end == End::event) t = event_time<F>(rate, run);
-      const auto y = at_time<F>(rate, run.y(), t);
-      state = form.state(begin, stretch, t, y.data());
+      state = state_at(form, begin, stretch, t, at_time<F>(rate, run.y(), t), run);
       if (end == End::event) return {{}, t, true};
       if (!last) visit(state);
     }
     return {};
+  }
+
+  template <class F, class T>
+  static BasicState<T> state_at(const F& form, const BasicState<T>& begin, const BasicStretch<T>& stretch,
+                                const T& t, const std::array<T, F::size>& y, const LightRun<F, T>& run) {
+    if constexpr (std::is_same_v<T, double> &&
+                  requires { form.state(begin, stretch, t, y.data(), run.here()); })
+      return form.state(begin, stretch, t, y.data(), run.here());
+    else
+      return form.state(begin, stretch, t, y.data());
   }
 
   /// The time of the event with its slopes: those of g(y, t) = 0, -g_p/g_t.
@@ -302,7 +384,7 @@ struct Light {
         y[i] = run.y()[i];
         y[i].slope[0] = dydt[i];
       }
-      const auto g = rate.event(D(T(run.t()), 0), y.data());
+      const auto g = rate.event_at(D(T(run.t()), 0), y.data());
       if constexpr (std::is_same_v<decltype(g), const double>)
         return run.t();  // no event of its own
       else

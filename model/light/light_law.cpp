@@ -15,6 +15,8 @@ namespace {
 constexpr auto no_sample = [] { return 2.0; };
 constexpr auto no_visit = [](const auto&...) {};
 
+bool went(const Reached<double>& reached) { return !reached.status.failed() && !reached.lost_pressure; }
+
 template <class T>
 BasicHistory<T> with_slopes(const History& h) {
   return {h.phi_H, h.phi_max, h.nu};
@@ -45,19 +47,55 @@ LightLaw::LightLaw(Law law, Tolerance tolerance, LightMethod method)
   check(tolerance);
 }
 
-/// The increment of a point that stays jammed in its direction: no walk, no copy. False where it is not one.
+/// The increment of a point that goes on in its direction, without an event: no walk. False where it is not
+/// one.
 bool LightLaw::quick(State& state, const Stretch& stretch, LightCache* cache) const {
-  const auto* form = std::get_if<Coupled>(&law_);
-  if (!form || !state.jammed || stretch.q() != state.direction.q || stretch.eps_dev == 0) return false;
-  if (stretch.eps_vol != 0 && !(stretch.nu(1.0) > form->unjamming_density())) return false;
+  if (stretch.q() != state.direction.q || stretch.eps_dev == 0) return false;
   LightCache own;
   LightCache& known = cache ? *cache : own;
-  if (known.nu != state.nu || known.law != this) known = {this, state.nu, form->coefficients(state.nu)};
   const State before = state;
-  const Reached<double> reached = light_.run(*form, state, stretch, known.coefficients, no_sample, no_visit);
-  if (!reached.status.failed() && !reached.lost_pressure) return true;
+  const auto* coupled = std::get_if<Coupled>(&law_);
+  const auto* memory = std::get_if<Memory>(&law_);
+  if ((coupled && quick(*coupled, state, stretch, known)) ||
+      (memory && quick(*memory, state, stretch, known)))
+    return true;
   state = before;
   return false;
+}
+
+bool LightLaw::quick(const Coupled& form, State& state, const Stretch& stretch, LightCache& known) const {
+  if (!state.jammed) return false;
+  if (stretch.eps_vol != 0 && !(stretch.nu(1.0) > form.unjamming_density())) return false;
+  if (known.nu != state.nu || known.law != this) {
+    known.law = this;
+    known.nu = state.nu;
+    known.coefficients = form.coefficients(state.nu);
+  }
+  const State begin = state;
+  const StretchRate<Coupled, double> rate(form, stretch, begin.direction, known.coefficients);
+  LightRun<Coupled, double> run(rate, form.variables(begin), light_.tolerance, light_.method);
+  return went(light_.go(form, state, begin, stretch, rate, run, no_sample, no_visit));
+}
+
+bool LightLaw::quick(const Memory& form, State& state, const Stretch& stretch, LightCache& known) const {
+  if (!is_finite(state) || !is_part(state.shear.plus) || !is_part(state.shear.minus) ||
+      !is_part(state.shear.packed))
+    return false;
+  form.prepare(state);
+  const State begin = state;
+  const auto y = form.variables(begin);
+  const Memory::Coefficients<double>& c = known.memory.c;
+  const bool same_place = known.law == this && c.nu == state.nu && state.history.nu == state.nu &&
+                          c.phi_H == state.history.phi_H && c.phi_max == state.history.phi_max;
+  const bool same = same_place && known.y == y && known.jammed == state.jammed;
+  const StretchRate<Memory, double> rate(form, stretch, begin.direction,
+                                         same_place ? c : form.coefficients(state.nu, begin.direction));
+  LightRun<Memory, double> run(rate, y, light_.tolerance, light_.method, same ? &known.memory : nullptr);
+  if (!went(light_.go(form, state, begin, stretch, rate, run, no_sample, no_visit))) return false;
+  known.law = nullptr;
+  if (run.here() && form.variables(state) == run.y())
+    known = {.law = this, .memory = *run.here(), .y = run.y(), .jammed = state.jammed};
+  return true;
 }
 
 template <class T, class Visitor>
@@ -79,14 +117,17 @@ Status LightLaw::walk_along(BasicState<T>& state, const BasicStretch<T>& stretch
   return {};
 }
 
+bool LightLaw::is_part(double x) const {
+  const double slack = std::clamp(10 * light_.tolerance.rtol, 1e-6, 0.01);  // what an integration leaves
+  return x >= -slack && x <= 1 + slack;
+}
+
 Status LightLaw::admits(const State& state, const Stretch& stretch) const {
   if (!is_finite(state))
     return {Status::Code::failed,
             "the state holds what is not a number: nu, P, sigma_dev, F_dev or its memory"};
-  const double slack = std::clamp(10 * light_.tolerance.rtol, 1e-6, 0.01);  // what an integration leaves
   for (const double x : {state.shear.plus, state.shear.minus, state.shear.packed})
-    if (!(x >= -slack && x <= 1 + slack))
-      return {Status::Code::failed, "the memory of shear must be in [0, 1], got " + shown(x)};
+    if (!is_part(x)) return {Status::Code::failed, "the memory of shear must be in [0, 1], got " + shown(x)};
   if (!std::isfinite(stretch.eps_vol) || !std::isfinite(stretch.eps_dev))
     return {Status::Code::failed, "the strain increment must be finite, got eps_vol = " +
                                       shown(stretch.eps_vol) + ", eps_dev = " + shown(stretch.eps_dev)};

@@ -3,6 +3,7 @@
 // threads.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -19,12 +20,16 @@ struct Tangent {
   double P[2] = {0, 0}, sigma_dev[2] = {0, 0}, F_dev[2] = {0, 0};
 };
 
-/// What the coupled form computed from nu last. Give the same one again and again to a point, or to a row of
-/// points of one volume fraction, and increments at constant volume cost a third less.
+/// What the coupled form computed from nu last, or the form with memory where its last increment ended. Give
+/// the same one again and again to a point, or in the former to a row of points of one volume fraction, and
+/// increments cost less, those of the coupled form at constant volume by a third.
 struct LightCache {
   const void* law = nullptr;  ///< whose they are
   double nu = -1;
   Coupled::Coefficients<double> coefficients{};
+  Memory::Here<double, double> memory{};
+  std::array<double, Memory::size> y{};  ///< the variables there
+  bool jammed = false;
 };
 
 class LightLaw {
@@ -53,6 +58,10 @@ class LightLaw {
   Status walk_along(BasicState<T>& state, const BasicStretch<T>& stretch, std::span<const double> samples,
                     const Visitor& visit) const;
   bool quick(State& state, const Stretch& stretch, LightCache* cache) const;
+  bool quick(const Coupled& form, State& state, const Stretch& stretch, LightCache& known) const;
+  bool quick(const Memory& form, State& state, const Stretch& stretch, LightCache& known) const;
+  /// Whether x may be a memory of shear.
+  bool is_part(double x) const;
   Status admits(const State& state, const Stretch& stretch) const;
 
   Law law_;

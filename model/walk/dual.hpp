@@ -93,6 +93,11 @@ struct Dual {
     using std::log;
     return chain(log(a.value), 1.0 / a.value, a);
   }
+  friend Dual sqrt(const Dual& a) {
+    using std::sqrt;
+    const T f = sqrt(a.value);
+    return chain(f, 0.5 / f, a);
+  }
   friend Dual abs(const Dual& a) { return a.value < 0 ? -a : a; }
   /// a^b. Where a = 0, the derivative with respect to b is 0 and the one with respect to a is infinite for b
   /// < 1: only a slope that is not 0 meets it.

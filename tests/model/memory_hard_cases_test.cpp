@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "memory_fixture.hpp"
 
@@ -266,6 +267,37 @@ TEST_P(MemoryHardCases, WhatIsNoNumberIsRefused) {
       State spoilt = before;
       spoilt.shear.*member = bad;
       EXPECT_TRUE(walk(spoilt, 0.01, 0.01).failed());
+    }
+  }
+}
+
+/// UNI from 0.64 through jamming to 0.82, to and fro, of packings that have not been compressed, or once and
+/// more: at no tolerance does a step become too small, and the error is what was asked.
+TEST_P(MemoryHardCases, UniaxialCompressionThroughJammingAtAnyTolerance) {
+  const double up = std::log(0.82 / 0.64);
+  for (const State& start :
+       {isotropic(0.64, over().phi_SJ, 0.64), isotropic(0.64), isotropic(0.64, 0.66, 0.73)}) {
+    const auto follow = [&](WalkedBy integrator, Tolerance tolerance) {
+      std::vector<State> states{start};
+      for (const double part : {1.0, -1.0, 1.0, -0.5, 0.5}) {
+        State state = states.back();
+        const Status status = walk_by(integrator, state, part * up, part * up, tolerance);
+        EXPECT_FALSE(status.failed()) << tolerance.rtol << ": " << status.message;
+        states.push_back(state);
+      }
+      return states;
+    };
+    const std::vector<State> exact = follow(WalkedBy::adams, {1e-11, 1e-14});
+    for (const double rtol : {1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+      SCOPED_TRACE(rtol);
+      const std::vector<State> states = follow(GetParam(), {rtol, 1e-3 * rtol});
+      for (std::size_t i = 0; i < exact.size(); ++i) {
+        EXPECT_EQ(states[i].jammed, exact[i].jammed) << i;
+        EXPECT_NEAR(states[i].P, exact[i].P, 4 * rtol * exact[1].P) << i;
+        EXPECT_NEAR(states[i].sigma_dev, exact[i].sigma_dev, 4 * rtol * exact[1].sigma_dev) << i;
+        EXPECT_NEAR(states[i].F_dev, exact[i].F_dev, 4 * rtol * exact[1].F_dev) << i;
+        EXPECT_NEAR(states[i].phi_J, exact[i].phi_J, 4 * rtol * exact[1].phi_J) << i;
+      }
     }
   }
 }

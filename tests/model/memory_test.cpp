@@ -373,5 +373,36 @@ TEST(Memory, StartsFromPressureOrJammingDensityOrCompression) {
                     HasSubstr("--form minimal does without")));
 }
 
+/// Increments that go on in a direction take what the last one knew; what it is of is looked at.
+TEST(Memory, ACacheChangesNothingOnTheLightPath) {
+  const LightLaw light(memory_law(), {1e-8, 1e-11});
+  State with = isotropic(0.68), without = with, other = isotropic(0.7);
+  LightCache cache;
+  for (int i = 0; i < 300; ++i) {
+    const double v = i % 3 == 0 ? 1e-4 : 0, e = i % 50 < 25 ? 1e-3 : -1e-3;
+    ASSERT_FALSE(light.update(with, v, e, &cache).failed());
+    ASSERT_FALSE(light.update(without, v, e).failed());
+    if (i % 20 == 0) {
+      ASSERT_FALSE(light.update(other, v, e, &cache).failed());
+    }
+    ASSERT_NEAR(with.P, without.P, 1e-13);
+    ASSERT_NEAR(with.sigma_dev, without.sigma_dev, 1e-13);
+    ASSERT_NEAR(with.phi_J, without.phi_J, 1e-13);
+    ASSERT_NEAR(with.history.phi_H, without.history.phi_H, 1e-13);
+  }
+}
+
+/// The density of the steady state is what the pressure of its row asks for, from whatever it is looked for.
+TEST(Memory, TheDensityOfTheSteadyStateHasItsPressure) {
+  const double phi_s = form().laws.shear_pressure.nu_c;
+  for (const double above : {1e-12, 1e-9, 1e-6, 1e-3, 0.01, 0.05, 0.16, 0.3}) {
+    const double nu = phi_s + above, phi = form().steady_density(nu);
+    EXPECT_NEAR(form().pressure_of(nu, phi) / pressure(form().laws.shear_pressure, nu), 1,
+                1e-13 + 1e-15 / above);
+    for (const double at : {phi_s + above / 2, phi_s + 2 * above, 0.8})
+      EXPECT_NEAR(form().steady_density(nu, at, form().steady_density(at)), phi, 4e-16);
+  }
+}
+
 }  // namespace
 }  // namespace grainlaw::model

@@ -124,7 +124,7 @@ void expect_same(const State& a, const State& b) {
 }
 
 struct Tally {
-  int legs = 0, failed = 0, unjammed = 0, beyond = 0, gave_way = 0;
+  int legs = 0, failed = 0, disagreed_to_fail = 0, unjammed = 0, beyond = 0, gave_way = 0;
   double most_s = 0, most_ahead = 0;
 };
 
@@ -178,7 +178,7 @@ double distance(const State& a, const State& b) {
 
 TEST(RandomPaths, EveryIntegratorIsSoundAndAllAgree) {
   std::map<Form, Tally> tallies;
-  int compared = 0, disagreed_to_fail = 0;
+  int compared = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     Chance chance(seed);
     const Form form = seed <= 400 ? forms[seed % 4] : Form::memory;
@@ -207,7 +207,7 @@ TEST(RandomPaths, EveryIntegratorIsSoundAndAllAgree) {
       const bool all[] = {expect_sound_leg(law, one, leg, by_point(bdf), tally),
                           expect_sound_leg(law, two, leg, by_point(adams), tally),
                           expect_sound_leg(law, by_light, leg, by_light_path, tally)};
-      disagreed_to_fail += all[0] != all[1] || all[0] != all[2];
+      tally.disagreed_to_fail += all[0] != all[1] || all[0] != all[2];
       if (!all[0] || !all[1] || !all[2]) break;
       // Far beyond saturation, with hardly any pressure left, the law is as sensitive to its state.
       wild = wild || std::abs(fullness(law, one).s) > 1.5;
@@ -217,12 +217,17 @@ TEST(RandomPaths, EveryIntegratorIsSoundAndAllAgree) {
     }
   }
   EXPECT_GT(compared, 2000);
-  EXPECT_LE(disagreed_to_fail, 4);
+  int disagreed_to_fail = 0;
   for (const auto& [form, tally] : tallies) {
+    disagreed_to_fail += tally.disagreed_to_fail;
     EXPECT_GT(tally.legs, 1500) << name_of(form);
     EXPECT_LT(tally.failed, 10) << name_of(form);
     EXPECT_GT(tally.unjammed, 50) << name_of(form);
   }
+  // Of the coupled form, where contact is lost and found again without end.
+  EXPECT_LE(disagreed_to_fail, 4);
+  EXPECT_EQ(tallies[Form::memory].disagreed_to_fail, 0);
+  EXPECT_EQ(tallies[Form::memory].failed, 0);
   // The thesis's own form leaves |s| <= s_max, the reduced closed one never.
   EXPECT_EQ(tallies[Form::reduced_closed].beyond, 0);
   EXPECT_GT(tallies[Form::coupled].beyond, 0);
