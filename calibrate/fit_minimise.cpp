@@ -119,8 +119,8 @@ std::optional<Run> descend_within(const FitProblem& problem, const std::vector<s
   return run;
 }
 
-bool at_low(const FitParameter& p, double value) { return value <= p.low + 1e-9 * (p.high - p.low); }
-bool at_high(const FitParameter& p, double value) { return value >= p.high - 1e-9 * (p.high - p.low); }
+bool on_low(const FitParameter& p, double value) { return value <= p.low + 1e-9 * (p.high - p.low); }
+bool on_high(const FitParameter& p, double value) { return value >= p.high - 1e-9 * (p.high - p.low); }
 
 /// Whether the sum of squares falls when parameter i leaves its bound.
 bool pulls_inwards(const FitProblem& problem, const std::vector<double>& weights,
@@ -135,7 +135,7 @@ bool pulls_inwards(const FitProblem& problem, const std::vector<double>& weights
       ++row;
     }
   }
-  return at_low(problem.parameters[i], values[i]) ? slope < 0 : slope > 0;
+  return on_low(problem.parameters[i], values[i]) ? slope < 0 : slope > 0;
 }
 
 /// The solver projects its steps onto the bounds, and a step cut short there can end it before the other
@@ -150,7 +150,7 @@ std::optional<Run> descend(const FitProblem& problem, const std::vector<std::siz
     std::vector<double> from = run->values;
     for (const std::size_t i : free) {
       const FitParameter& p = problem.parameters[i];
-      const bool low = at_low(p, from[i]), high = at_high(p, from[i]);
+      const bool low = on_low(p, from[i]), high = on_high(p, from[i]);
       (low || high ? resting : inner).push_back(i);
       if (low || high) from[i] = low ? p.low : p.high;
     }
@@ -164,7 +164,7 @@ std::optional<Run> descend(const FitProblem& problem, const std::vector<std::siz
     for (const std::size_t i : resting) {
       if (!pulls_inwards(problem, weights, run->values, i)) continue;
       const FitParameter& p = problem.parameters[i];
-      nudged[i] += (at_low(p, nudged[i]) ? 1e-3 : -1e-3) * (p.high - p.low);
+      nudged[i] += (on_low(p, nudged[i]) ? 1e-3 : -1e-3) * (p.high - p.low);
     }
     if (nudged == run->values) return run;
     auto again = descend_within(problem, free, weights, unit, nudged);

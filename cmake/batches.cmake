@@ -1,8 +1,9 @@
-# Tests in batches: what many files instantiate alike, GoogleTest's templates and JSON's, is compiled once for all files of
-# a batch, which takes less than half the time. What a file keeps to itself, in its unnamed namespace, stays apart: the namespace gets a name.
+# Sources in batches: what many files instantiate alike, the standard library's templates, JSON's and GoogleTest's, is
+# compiled once for all files of a batch, which takes about half the time. Messages of the compiler and of tests name the
+# sources and their lines.
 
-# grainlaw_batches(VARIABLE room SOURCES…): sets the variable to files that hold six of the sources each. Messages of the
-# compiler and of tests name the sources and their lines.
+# grainlaw_batches(VARIABLE room SOURCES…): sets the variable to files that hold six of these tests each. What a test keeps
+# to itself, in its unnamed namespace, stays apart: the namespace gets a name.
 function(grainlaw_batches variable room)
   list(LENGTH ARGN count)
   math(EXPR last "${count} - 1")
@@ -23,4 +24,49 @@ function(grainlaw_batches variable room)
   endforeach()
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
   set(${variable} ${batches} PARENT_SCOPE)
+endfunction()
+
+# grainlaw_names_of(VARIABLE source): the names that the file declares at the margin, those in its unnamed namespace among
+# them; its own where it has none, and ALONE where it opens another namespace to what would follow.
+function(grainlaw_names_of variable source)
+  file(READ ${source} text)
+  if(text MATCHES "\nusing namespace ")
+    set(${variable} ALONE PARENT_SCOPE)
+    return()
+  endif()
+  string(REGEX REPLACE "[][;]" " " text "${text}")
+  string(REGEX MATCHALL "\n[a-zA-Z][^\n]*" lines "${text}")
+  set(names ${source})
+  foreach(line IN LISTS lines)
+    if(NOT line MATCHES "^\n(using [^=]*$|namespace )" AND line MATCHES "([a-zA-Z_0-9]+)( = | ?{|\\()")
+      list(APPEND names ${CMAKE_MATCH_1})
+    endif()
+  endforeach()
+  set(${variable} ${names} PARENT_SCOPE)
+endfunction()
+
+# grainlaw_batch_sources(target SOURCES…): compiles these sources of the target in batches of six, none of which declares
+# a name twice.
+function(grainlaw_batch_sources target)
+  foreach(source IN LISTS ARGN)
+    grainlaw_names_of(names ${source})
+    if(names STREQUAL ALONE)
+      continue()
+    endif()
+    set(batch 0)
+    while(TRUE)
+      set(own ${names_${batch}})
+      list(REMOVE_ITEM own ${names})
+      list(LENGTH sources_${batch} size)
+      if(size LESS 6 AND "${own}" STREQUAL "${names_${batch}}")
+        break()
+      endif()
+      math(EXPR batch "${batch} + 1")
+    endwhile()
+    list(APPEND sources_${batch} ${source})
+    list(APPEND names_${batch} ${names})
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${batch})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
 endfunction()

@@ -11,7 +11,7 @@ option(GRAINLAW_WERROR "Warnings are errors" OFF)
 # Two that halve the time to build: a compiler cache cannot see through the first, and compiles more than changed by the second.
 cmake_dependent_option(GRAINLAW_PRECOMPILE "Precompile the headers that nearly every file includes" ON
                        "NOT CMAKE_CXX_COMPILER_LAUNCHER" OFF)
-cmake_dependent_option(GRAINLAW_BATCHES "Compile the tests in batches of six files" ON
+cmake_dependent_option(GRAINLAW_BATCHES "Compile sources in batches of six files" ON
                        "NOT CMAKE_CXX_COMPILER_LAUNCHER" OFF)
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
@@ -40,11 +40,21 @@ if(GRAINLAW_SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
-# grainlaw_precompile(target HEADERS): these and the ones that every room includes, once for all sources of the target.
+include(${CMAKE_CURRENT_LIST_DIR}/batches.cmake)
+
+# grainlaw_precompile(target HEADERS): these and the ones that every room includes, once for all sources of the target. Or
+# FROM an earlier target with the same flags, once for both.
 function(grainlaw_precompile target)
-  if(GRAINLAW_PRECOMPILE)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" FROM "")
+  if(NOT GRAINLAW_PRECOMPILE)
+    return()
+  endif()
+  if(ARG_FROM)
+    target_precompile_headers(${target} REUSE_FROM ${ARG_FROM})
+  else()
     target_precompile_headers(${target} PRIVATE <nlohmann/json.hpp> <algorithm> <array> <cmath> <cstdint> <filesystem>
-                              <functional> <map> <optional> <sstream> <string> <variant> <vector> ${ARGN})
+                              <functional> <map> <optional> <sstream> <string> <variant> <vector>
+                              ${ARG_UNPARSED_ARGUMENTS})
   endif()
 endfunction()
 
@@ -57,10 +67,12 @@ function(grainlaw_quick_to_compile target)
   endif()
 endfunction()
 
-# grainlaw_library(room FOLDERS): the sources of this folder, and of these within it, as grainlaw::room.
+# grainlaw_library(room FOLDERS [ALONE NAMES]): the sources of this folder, and of these within it, as grainlaw::room. No
+# batch takes in those of the folders and files ALONE, in which time is spent: they are optimised by themselves.
 function(grainlaw_library room)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" ALONE)
   set(patterns ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
-  foreach(folder ${ARGN})
+  foreach(folder ${ARG_UNPARSED_ARGUMENTS})
     list(APPEND patterns ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
   endforeach()
   file(GLOB sources CONFIGURE_DEPENDS ${patterns})
@@ -71,5 +83,10 @@ function(grainlaw_library room)
                                                      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(grainlaw_${room} PUBLIC cxx_std_20)
   target_link_libraries(grainlaw_${room} PRIVATE $<BUILD_INTERFACE:grainlaw_warnings>)
-  grainlaw_precompile(grainlaw_${room})
+  if(GRAINLAW_BATCHES)
+    foreach(name ${ARG_ALONE})
+      list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${name}(/|$)")
+    endforeach()
+    grainlaw_batch_sources(grainlaw_${room} ${sources})
+  endif()
 endfunction()

@@ -15,14 +15,14 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_pressure = 1e-5;
 
 /// What a row has measured; NaN where it has not.
-struct State {
+struct Measured {
   double nu, P, C, C_star, f_NR;
 };
 
 using Estimates = std::array<double, 4>;
 constexpr const char* names[] = {"phi_J", "phi_J_pressure_alone", "phi_J_contacts", "phi_J_nonrattlers"};
 
-Estimates estimates_of(const PackingLaw& law, const State& s) {
+Estimates estimates_of(const PackingLaw& law, const Measured& s) {
   const PressureCurve pressure = law.pressure();
   const ContactCurve contacts = law.contacts();
   // Grains that touch in passing press a little, too: with fewer contacts than balance needs nothing is
@@ -39,7 +39,7 @@ constexpr Parameter PackingLaw::*numbers[] = {&PackingLaw::C0,     &PackingLaw::
                                               &PackingLaw::gamma_p};
 
 /// Root of the sum of squares of the scatter and of what each stated error moves; NaN where that is nothing.
-Estimates errors_of(const PackingLaw& law, const State& s, const Estimates& at, double scatter) {
+Estimates errors_of(const PackingLaw& law, const Measured& s, const Estimates& at, double scatter) {
   Estimates squares;
   for (std::size_t i = 0; i < at.size(); ++i) squares[i] = std::isfinite(at[i]) ? scatter * scatter : nan;
   for (const auto number : numbers) {
@@ -92,7 +92,7 @@ Record infer_jamming_density(const Record& record, const PackingLaw& law, double
   };
   Record out(columns);
   for (std::size_t i = 0; i < record.rows(); ++i) {
-    const State s{record["nu"][i], record["P"][i], field("C", i), field("C_star", i), field("f_NR", i)};
+    const Measured s{record["nu"][i], record["P"][i], field("C", i), field("C_star", i), field("f_NR", i)};
     const Estimates phi_J = estimates_of(law, s), errors = errors_of(law, s, phi_J, scatter);
     std::vector<double> row;
     for (std::size_t k = 0; k < kept; ++k) row.push_back(record[columns[k]][i]);

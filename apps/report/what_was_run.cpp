@@ -51,11 +51,11 @@ std::optional<double> total(const Inputs& inputs, const std::string& key) {
 }
 
 Markup material_sentence(const Inputs& inputs) {
-  const Json& material = value_in(inputs.campaign, "material");
-  const auto w = number_in(material, "w"), k = number_in(material, "k");
+  const Json& given = value_in(inputs.campaign, "material");
+  const auto w = number_in(given, "w"), k = number_in(given, "k");
   if (!w || !k) return {};
   Markup sentence = "Radii are uniform with r<sub>max</sub>/r<sub>min</sub> = "_html + text(number(*w)) +
-                    " about a mean of "_html + text(number(number_in(material, "r_mean"))) +
+                    " about a mean of "_html + text(number(number_in(given, "r_mean"))) +
                     " mm; contacts have stiffness "_html + text(number(*k * 1e3)) +
                     " kg/s² and no friction. "_html;
   if (const auto unit = inputs.stress_unit_kPa()) {

@@ -91,7 +91,7 @@ TEST_F(ControlledDrive, TriaxialShearsAndDilatesADensePacking) {
   const Record r = run(R"({"mode": "iso", "controls": {"nu": 0.82}, "rate": 1e-3},
                           {"mode": "iso", "controls": {"nu": 0.68}, "rate": 2e-4}, {"mode": "relax"},
                           {"mode": "triaxial", "amount": 0.1, "rate": 2e-4})",
-                       R"("rows": 10)", "a", 500);
+                       R"("rows": 10)", "a", 300);
   ASSERT_EQ(r.rows(), 32u);
   EXPECT_GT(r["s_dev"][31], 0.1);
   EXPECT_LT(r["nu"][31], r["nu"][21]);

@@ -504,6 +504,7 @@ TEST(Controlled, RandomPathsEndWhereTheySay) {
     const std::string text =
         R"({"start": {"nu": )" + to_text(uniform(0.66, 0.8)) + R"(}, "segments": [)" + segments + "]}";
     for (const Form form : all_forms) {
+      if (form == Form::memory && path % 3 != 0) continue;  // it takes longest by far
       SCOPED_TRACE(name_of(form) + " " + text);
       const Prediction p = predict(set_of(form), path_of(text), {form, 1e-8, 1e-12, 10});
       ++ends[p.status.code];

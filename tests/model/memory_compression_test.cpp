@@ -214,7 +214,7 @@ TEST(MemoryCompression, UniaxialCyclesSlideAlongFirstCompressions) {
     State state = isotropic(0.64, over().phi_SJ, 0.64);
     const double way = std::log(0.82 / 0.64);
     double low = 1, high = 0;
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 100; ++i) {
       for (const double q : {1.0, -1.0}) {
         const Status status = walk_by(integrator, state, q * way, q * way);
         ASSERT_FALSE(status.failed()) << name_of(integrator) << i << status.message;
