@@ -47,8 +47,17 @@ bool is_told(const Json& account, const std::string& name) {
   return false;
 }
 
-/// Fits the numbers that such tests tell to those of `folder`; what is not determined is assumed.
-void fit_numbers(const RecordFolder& folder, ToldBy told_by, model::ParameterSet& parameters) {
+/// Whether the account of a fit says that the law follows the tests within their errors.
+bool follows(const Json& account) {
+  for (const Json& sentence : account.at("sentences"))
+    if (sentence.get<std::string>().starts_with("the law does not follow")) return false;
+  return true;
+}
+
+/// Fits the numbers that such tests tell to those of `folder`; what is not determined is assumed, and its
+/// name returned.
+std::vector<std::string> fit_numbers(const RecordFolder& folder, ToldBy told_by,
+                                     model::ParameterSet& parameters) {
   PolishOptions options;
   options.selection.modes = {"d2"};
   options.selection.reversed_only = told_by != ToldBy::loading;
@@ -56,22 +65,31 @@ void fit_numbers(const RecordFolder& folder, ToldBy told_by, model::ParameterSet
   if (told_by == ToldBy::fabric) options.compared = {false, false, true};
   options.form.form = model::Form::memory;
   options.trade_off = options.profiles = options.held_out = false;
-  for (const Number& number : numbers)
-    if (number.told_by == told_by) options.names.emplace_back(number.name);
   auto& memory = *parameters.memory;
-  const auto assume = [&](const std::string& why) {
+  const auto for_each = [&](auto&& f) {
     for (const Number& number : numbers)
-      if (number.told_by == told_by) memory.*number.member = assumed(number.usual, why);
+      if (number.told_by == told_by) f(number, memory.*number.member);
   };
-  assume("the D2 tests do not tell");
+  for_each([&](const Number& number, auto& parameter) {
+    options.names.emplace_back(number.name);
+    parameter = assumed(number.usual, "the D2 tests do not tell");
+  });
+  std::vector<std::string> in_vain;
   try {
     const PolishOutput fitted = polish(folder, parameters, options);
-    for (const Number& number : numbers)
-      if (is_told(fitted.account, number.name))
-        memory.*number.member = (*fitted.parameters.memory).*number.member;
+    const bool followed = follows(fitted.account);
+    for_each([&](const Number& number, auto& parameter) {
+      if (!is_told(fitted.account, number.name)) return in_vain.emplace_back(number.name), void();
+      parameter = (*fitted.parameters.memory).*number.member;
+      if (!followed) parameter->note += "; the law does not follow them within their errors";
+    });
   } catch (const Error& error) {  // no D2 test that could be followed: the other fits stand
-    assume(std::string("no D2 test tells (") + error.what() + ")");
+    for_each([&](const Number& number, auto& parameter) {
+      parameter = assumed(number.usual, std::string("no D2 test tells (") + error.what() + ")");
+      in_vain.emplace_back(number.name);
+    });
   }
+  return in_vain;
 }
 
 }  // namespace
@@ -80,19 +98,22 @@ bool tells_of_reversals(const TestRecord& test) {
   return test.role == Role::fit && test.mode == "d2" && reverses(test);
 }
 
-void add_memory_numbers(const RecordFolder& folder, const RecordFolder& reversals,
-                        model::ParameterSet& parameters) {
+std::vector<std::string> add_memory_numbers(const RecordFolder& folder, const RecordFolder& reversals,
+                                            model::ParameterSet& parameters) {
   if (!parameters.memory || !parameters.moduli || !parameters.shear || !parameters.isotropic.contains("d2"))
-    return;
+    return {};
   for (const Number& number : numbers)
     (*parameters.memory).*number.member =
         assumed(number.usual,
                 number.told_by == ToldBy::nothing ? "no test is asked for it" : "no D2 test is reversed");
-  fit_numbers(folder, ToldBy::loading, parameters);
+  std::vector<std::string> in_vain = fit_numbers(folder, ToldBy::loading, parameters);
   const RecordFolder& reversed = reversals.tests.empty() ? folder : reversals;
-  if (std::none_of(reversed.tests.begin(), reversed.tests.end(), tells_of_reversals)) return;
-  fit_numbers(reversed, ToldBy::fabric, parameters);  // first: F_dev says how far a shear is opposed
-  fit_numbers(reversed, ToldBy::pressure, parameters);
+  if (std::none_of(reversed.tests.begin(), reversed.tests.end(), tells_of_reversals)) return in_vain;
+  for (const ToldBy told_by : {ToldBy::fabric, ToldBy::pressure}) {  // F_dev says how far a shear is opposed
+    const auto others = fit_numbers(reversed, told_by, parameters);
+    in_vain.insert(in_vain.end(), others.begin(), others.end());
+  }
+  return in_vain;
 }
 
 }  // namespace grainlaw::calibrate

@@ -2,6 +2,9 @@
 // does (eps0_R, eps_r, phi_pack from P, hold from F_dev) from those that are reversed.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "grainlaw/calibrate/fit_input.hpp"
 #include "grainlaw/model/parameters.hpp"
 
@@ -13,8 +16,9 @@ bool tells_of_reversals(const TestRecord& test);
 
 /// Gives group memory of `parameters` what that form needs, where it can be taken at all: fitted to the D2
 /// tests of role fit in `folder`, what a reversal does to those in `reversals` that turn their shear round
-/// (where it is empty: of `folder`), and assumed (with a note that says why) where these do not tell.
-void add_memory_numbers(const RecordFolder& folder, const RecordFolder& reversals,
-                        model::ParameterSet& parameters);
+/// (where it is empty: of `folder`), and assumed (with a note that says why) where these do not tell. Returns
+/// the names of those that were asked of tests in vain.
+std::vector<std::string> add_memory_numbers(const RecordFolder& folder, const RecordFolder& reversals,
+                                            model::ParameterSet& parameters);
 
 }  // namespace grainlaw::calibrate

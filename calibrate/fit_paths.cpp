@@ -34,8 +34,8 @@ std::vector<TradeOff> sweep(const PathProblem& problem, const PathMinimum& best,
   return points;
 }
 
-/// The set with what was found: values, errors, source "fit".
-model::ParameterSet polished(const PathProblem& problem, const PathFit& fit) {
+/// The set with what was found: values, errors, source "fit", and from which records.
+model::ParameterSet polished(const PathProblem& problem, const PathFit& fit, const std::string& records) {
   model::ParameterSet set = problem.with(fit.best.values);
   for (std::size_t k = 0; k < problem.names().size(); ++k) {
     model::Parameter& p = set.parameter(problem.names()[k]);
@@ -43,7 +43,7 @@ model::ParameterSet polished(const PathProblem& problem, const PathFit& fit) {
     p.stderr_.reset();
     if (std::isfinite(fit.errors.errors[k])) p.stderr_ = fit.errors.errors[k];
     p.source = "fit";
-    p.note = "whole paths, from " + to_text(problem.start()[k]);
+    p.note = "whole paths of " + records + ", from " + to_text(problem.start()[k]);
     if (problem.at_bound(k, fit.best.values[k])) p.note += "; rests on the bound of the law";
   }
   return set;
@@ -103,7 +103,7 @@ PolishOutput polish(const RecordFolder& folder, const model::ParameterSet& start
     fit.best = problem.minimise(problem.start(), alike, fit.blind.numbers);
     if (const auto after = problem.evaluate(fit.best.values, alike, true, &why)) {
       fit.errors = path_errors(problem, *after, fit.blind.numbers);
-      out.parameters = polished(problem, fit);
+      out.parameters = polished(problem, fit, folder.name);
       if (options.trade_off && options.compared == all_columns)
         fit.trade_off = sweep(problem, fit.best, fit.blind.numbers);
       for (std::size_t k = 0; options.profiles && k < names.size(); ++k)

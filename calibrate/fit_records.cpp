@@ -139,8 +139,13 @@ FitOutput fit_records(const std::filesystem::path& dir, const std::filesystem::p
   if (!account.relaxed.empty()) out.relaxed = relaxed_table(account.relaxed);
   if (!account.tapped.empty()) out.tapped = tapped_table(account.tapped);
   out.parameters.closure = {"iso", out.parameters.isotropic.contains("d2") ? "d2" : "iso", false};
-  add_memory_numbers(folder, reversals, out.parameters);
+  const auto in_vain = add_memory_numbers(folder, reversals, out.parameters);
   out.fits = account.to_json();
+  for (const std::string& name : in_vain)
+    out.fits["not_determined"].push_back({{"fit", "memory.paths"},
+                                          {"role", "fit"},
+                                          {"parameter", name.substr(name.find('.') + 1)},
+                                          {"reason", out.parameters.parameter(name).note}});
   out.fits["checks"] = physics_checks(account);
   return out;
 }

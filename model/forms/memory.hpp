@@ -209,7 +209,10 @@ struct BasicMemory {
     }
     if constexpr (std::is_same_v<R, double>) {
       return nu / ratio;
-    } else {  // once more, with slopes
+    } else {
+      // Once more, with slopes. Where contacts begin all are infinite; they are taken a little above.
+      const double begin = value(laws.pressure.contacts.nu_c) / value(laws.pressure.nu_c);
+      if (std::abs(ratio / begin - 1) < 1e-12) ratio = begin * (1 + 1e-12);
       const R at = laws.pressure.nu_c * ratio;
       return nu /
              (ratio - (pressure(laws.pressure, at) - wanted) * ratio / pressure_slope(laws.pressure, at));
@@ -367,11 +370,11 @@ struct BasicMemory {
     }
     if (laws.terms.volumetric) dydt[1] = fabric_by_volume(laws.volumetric, v, F);
     if (v > 0 && direction.jammed) {  // it begins with contacts, at an event
-      const auto growth = [&](const R& phi) {
-        return growth_by_compression<P, R>(laws.memory.over, share, c.limit, phi, c.nu, c.phi_max);
+      const auto growth = [&]<class Phi>(const Phi& phi) -> Phi {
+        return growth_by_compression<P, Phi>(laws.memory.over, share, c.limit, phi, c.nu, c.phi_max);
       };
       const bool packs = laws.memory.phi_pack > c.phi_H;
-      const R unpacked = growth(c.phi_H), whole = packs && !vanishes(y[4]) ? growth(here.phi_H) : unpacked;
+      const R unpacked = growth(R(c.phi_H)), whole = packs && !vanishes(y[4]) ? growth(here.phi_H) : unpacked;
       const R lost = loss_by_compression(here, whole, growth);
       for (const std::size_t i : {2, 3}) dydt[i] = y[i] * (lost * -v);
       // phi_t goes along with phi_H, so that it is phi_J that grows by Eqs. 5.1 and 5.5
@@ -545,9 +548,16 @@ struct BasicMemory {
   R loss_by_compression(const Here<C, R>& here, const R& whole, Growth growth) const {
     using std::abs;
     const R deficit = here.phi_H - here.phi_J;
-    if (value(abs(deficit)) < 1e-10 || !(here.m > 0)) return 0.0;
-    const R rate = (growth(here.phi_J) - whole) / deficit;
+    if (!(here.m > 0)) return 0.0;
+    // Of two densities next to each other the difference would be one of roundings.
+    R rate = 0.0;
+    if (value(abs(deficit)) > 1e-6)
+      rate = (growth(here.phi_J) - whole) / deficit;
+    else
+      rate = -growth(Dual<1, R>((here.phi_J + here.phi_H) / 2, 0)).slope[0];
     if (rate <= 0) return 0.0;
+    constexpr double gentle = 1e-3;  // it begins without a corner
+    rate = rate * rate / (rate + gentle);
     const R &a = here.a_plus, &b = here.a_minus;
     R part = a * (1 - b) + b * (1 - a);
     if (part < 1e-3 * here.m) part = 1e-3 * here.m;  // of two full memories neither takes any from m

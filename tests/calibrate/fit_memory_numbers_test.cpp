@@ -22,7 +22,7 @@ model::ParameterSet thesis() {
 
 TEST(FitMemoryNumbers, AreAssumedWithTheReasonWhereNoTestTells) {
   auto set = thesis();
-  add_memory_numbers({}, {}, set);
+  EXPECT_THAT(add_memory_numbers({}, {}, set), testing::ElementsAre("memory.alpha_P", "memory.eps0_P"));
   const auto& memory = *set.memory;
   for (const auto* number : {&memory.alpha_P, &memory.eps0_P, &memory.eps0_R_P, &memory.eps_r, &memory.hold,
                              &memory.pack_rate, &memory.phi_pack}) {
