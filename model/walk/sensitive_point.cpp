@@ -118,35 +118,45 @@ struct BySensitiveIntegrator {
   double above_contacts_of_shear(const Stretch& stretch, double t) const {
     return stretch.nu(t) - plain.laws.shear_pressure.contacts.nu_c;
   }
-  /// Where these pass 0 before the stretch or its jammed part ends: the first found by an integration of the
-  /// values alone.
-  Status find_crossings(System system, const Stretch& stretch, const Direction& direction,
+  /// Where that passes 0 within the stretch, or rather some roundings beyond, for there derivatives are
+  /// infinite.
+  void find_crossing_of_shear(const Stretch& stretch, std::vector<Crossing>& crossings) const {
+    if (stretch.eps_dev == 0 || stretch.eps_vol == 0) return;
+    const double beyond = 1 + std::copysign(1e-13, stretch.eps_vol),
+                 t = std::log(plain.laws.shear_pressure.contacts.nu_c * beyond / stretch.nu_0) /
+                     stretch.eps_vol;
+    if (t > 0 && t < 1) crossings.push_back({t, stretch.eps_vol > 0, true});
+  }
+  /// Where above_contacts() passes 0 before the jammed part of the stretch ends: found by an integration of
+  /// the values alone.
+  Status find_crossings_of_pressure(System system, const Stretch& stretch, const Direction& direction,
+                                    const double* begin, std::vector<Crossing>& crossings) const {
+    const auto above = [&](double t, const double* y) { return above_contacts(stretch, direction, t, y); };
+    system.others = {above};
+    std::array<double, Plain::size> y;
+    std::copy_n(begin, y.size(), y.begin());
+    bool rises = above(0, begin) < 0;
+    for (double t = 0; t < 1; rises = !rises) {
+      if (Status status = plain_integrator.start(system, t, 1, y.data()); status.failed()) return status;
+      const auto arrival = plain_integrator.advance(1, y.data());
+      if (arrival.status.failed()) return arrival.status;
+      if (!arrival.event || arrival.which == 1 || !(arrival.t > t && arrival.t < 1)) break;
+      t = arrival.t;
+      crossings.push_back({t, rises});
+    }
+    return {};
+  }
+  /// Both, in their order.
+  Status find_crossings(const System& system, const Stretch& stretch, const Direction& direction,
                         const double* begin, std::vector<Crossing>& crossings) const {
     if constexpr (std::is_same_v<Memory, Plain>) {
-      const double beyond = 1 + std::copysign(1e-13, stretch.eps_vol);  // there derivatives are infinite
-      const double passed =
-          std::log(plain.laws.shear_pressure.contacts.nu_c * beyond / stretch.nu_0) / stretch.eps_vol;
-      const bool passes = stretch.eps_dev != 0 && passed > 0 && passed < 1;
-      const auto sort = [&] {
-        if (passes) crossings.push_back({passed, stretch.eps_vol > 0, true});
-        std::sort(crossings.begin(), crossings.end(),
-                  [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
-      };
-      if (!direction.jammed) return sort(), Status{};
-      const auto above = [&](double t, const double* y) { return above_contacts(stretch, direction, t, y); };
-      system.others = {above};
-      std::array<double, Plain::size> y;
-      std::copy_n(begin, y.size(), y.begin());
-      bool rises = above(0, begin) < 0;
-      for (double t = 0; t < 1; rises = !rises) {
-        if (Status status = plain_integrator.start(system, t, 1, y.data()); status.failed()) return status;
-        const auto arrival = plain_integrator.advance(1, y.data());
-        if (arrival.status.failed()) return arrival.status;
-        if (!arrival.event || arrival.which == 1 || !(arrival.t > t && arrival.t < 1)) break;
-        t = arrival.t;
-        crossings.push_back({t, rises});
-      }
-      sort();
+      find_crossing_of_shear(stretch, crossings);
+      if (direction.jammed)
+        if (Status status = find_crossings_of_pressure(system, stretch, direction, begin, crossings);
+            status.failed())
+          return status;
+      std::sort(crossings.begin(), crossings.end(),
+                [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
     }
     return {};
   }
