@@ -42,7 +42,7 @@ Dynamics::Dynamics(const Material& material, const State& state, int threads)
       neighbours_(material.r_mean, grains_.largest_radius()),
       time_(state.time_us),
       steps_(state.step) {
-  assemble(threads);
+  if (threads > 1) team_.emplace(threads);
   update_list(0);
 }
 
@@ -50,28 +50,24 @@ Dynamics::Dynamics(const Material& material, ArchiveReader& archive, int threads
     : material_(material), law_(ContactLaw::of(material)), neighbours_(material.r_mean, 0) {
   keep(*this, archive);
   neighbours_.rebuild(grains_);
-  assemble(threads);
-  deal_out();
-}
-
-void Dynamics::assemble(int threads) {
   if (threads < 2) return;
-  team_ = std::make_shared<ThreadPool>(threads);
-  shares_.resize(static_cast<std::size_t>(threads));
+  team_.emplace(threads);
+  team_->deal(neighbours_.pairs(), grains_, true);
 }
 
 void Dynamics::start_flow(double dt, const Mat3& gradient) {
   grains_.motion = velocities();
   dt_ = dt;
   cell_ = cell_.moved(cell_.edges(), gradient);
-  if (neighbours_.outdated(grains_, cell_)) update_list(planned_steps * dt_);
   std::fill(grains_.force.begin(), grains_.force.end(), Quad{});
-  compute_forces();
+  if (neighbours_.outdated(grains_, cell_)) update_list(planned_steps * dt_);
+  add_contact_forces(law_, neighbours_.pairs(), cell_, grains_);
   for (std::size_t i = 0; i < count(); ++i) {
     const Quad now = acceleration(i), &v = grains_.motion[i];
     grains_.half[i] = {v.x - 0.5 * dt * now.x, v.y - 0.5 * dt * now.y, v.z - 0.5 * dt * now.z, 0};
     grains_.acceleration[i] = now;
   }
+  if (team_) team_->deal(neighbours_.pairs(), grains_, true);
 }
 
 void Dynamics::step(const Mat3& edges, const Mat3& gradient) {
@@ -82,7 +78,7 @@ void Dynamics::step(const Mat3& edges, const Mat3& gradient) {
                 " us after its start; measure.time_step (or time_step_gas) must be smaller");
   cell_ = next;
   if (neighbours_.outdated(cell_, excess)) update_list(planned_steps * dt_);
-  compute_forces();
+  add_forces();
   time_ += dt_;
   ++steps_;
 }
@@ -92,37 +88,26 @@ double Dynamics::advance_grains(const Cell& next) {
   const Stride stride{dt_, next.deformation_from(cell_.edges()), cell_.gradient(), material_.gamma_b,
                       next.tilted() || cell_.tilted() || !list.deformation.is_diagonal()};
   if (!team_) return advance(stride, list, grains_);
-  std::vector<double> excess(shares_.size());
-  team_->run([&](int t) {
-    const auto k = static_cast<std::size_t>(t);
-    excess[k] = advance(stride, list, shares_[k].first, shares_[k].last, grains_);
-  });
-  double worst = -1;
-  for (const double share : excess) {
-    if (std::isnan(share)) return share;
-    worst = std::max(worst, share);
-  }
-  return worst;
+  behind_ = true;
+  return team_->advance(stride, list);
 }
 
 void Dynamics::update_list(double lookahead) {
+  catch_up();
+  const std::uint64_t sorts = neighbours_.sorts();
   neighbours_.update(grains_, cell_, lookahead);
-  deal_out();
+  if (team_) team_->deal(neighbours_.pairs(), grains_, neighbours_.sorts() != sorts);
 }
 
-void Dynamics::deal_out() {
-  if (!team_) return;
-  team_->run([&](int t) {
-    const auto k = static_cast<std::size_t>(t);
-    deal(neighbours_.pairs(), count(), k, shares_.size(), force_lanes(), shares_[k]);
-  });
-}
-
-void Dynamics::compute_forces() {
+void Dynamics::add_forces() {
   if (!team_) return add_contact_forces(law_, neighbours_.pairs(), cell_, grains_);
-  team_->run([&](int t) {
-    contact_forces(law_, neighbours_.pairs(), cell_, shares_[static_cast<std::size_t>(t)], grains_);
-  });
+  team_->add_contact_forces(law_, neighbours_.pairs(), cell_);
+  behind_ = true;
+}
+
+void Dynamics::catch_up() const {
+  if (behind_) team_->gather(grains_);
+  behind_ = false;
 }
 
 Quad Dynamics::acceleration(std::size_t i) const {
@@ -131,6 +116,7 @@ Quad Dynamics::acceleration(std::size_t i) const {
 }
 
 Quads Dynamics::velocities() const {
+  catch_up();
   if (dt_ == 0) return grains_.motion;  // not started
   Quads v = grains_.half;
   for (std::size_t i = 0; i < count(); ++i) {
@@ -143,19 +129,19 @@ Quads Dynamics::velocities() const {
 }
 
 Measurement Dynamics::measure() const {
-  return dem::measure(law_, grains_, velocities(), cell_, neighbours_.pairs());
+  return dem::measure(law_, grains(), velocities(), cell_, neighbours_.pairs());
 }
 
 Sym6 Dynamics::static_stress() const {
-  return dem::static_stress(law_, grains_, grains_.motion, cell_, neighbours_.pairs());
+  return dem::static_stress(law_, grains(), grains().motion, cell_, neighbours_.pairs());
 }
 
 Energies Dynamics::energies() const {
-  return dem::energies(law_, grains_, velocities(), cell_, neighbours_.pairs());
+  return dem::energies(law_, grains(), velocities(), cell_, neighbours_.pairs());
 }
 
 State Dynamics::state() const {
-  State state = grains_.state(cell_, velocities());
+  State state = grains().state(cell_, velocities());
   state.time_us = time_;
   state.step = steps_;
   return state;

@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "grainlaw/dem/files/archive.hpp"
@@ -18,7 +18,6 @@
 #include "grainlaw/dem/step/neighbours.hpp"
 #include "grainlaw/dem/step/shares.hpp"
 #include "grainlaw/element/material.hpp"
-#include "grainlaw/element/thread_pool.hpp"
 
 namespace grainlaw::dem {
 
@@ -46,6 +45,7 @@ class Dynamics {
   Dynamics(const Material& material, ArchiveReader& archive, int threads = 1);
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {
+    self.catch_up();
     archive(self.grains_, self.cell_, self.neighbours_, self.dt_, self.time_, self.steps_);
   }
 
@@ -68,7 +68,11 @@ class Dynamics {
   std::uint64_t steps() const { return steps_; }
   std::size_t count() const { return grains_.count(); }
   int threads() const { return team_ ? team_->threads() : 1; }
-  const Grains& grains() const { return grains_; }  ///< sorted in space, not as in the State
+  /// Sorted in space, not as in the State.
+  const Grains& grains() const {
+    catch_up();
+    return grains_;
+  }
   const Neighbours& neighbours() const { return neighbours_; }
   const ContactLaw& law() const { return law_; }
   const Material& material() const { return material_; }
@@ -83,7 +87,7 @@ class Dynamics {
   Energies energies() const;
   /// Both in one pass, with the stiffness of the network: what servo and steering read. Velocities as in
   /// static_stress().
-  Glance glance() const { return dem::glance(law_, grains_, cell_, neighbours_.pairs()); }
+  Glance glance() const { return dem::glance(law_, grains(), cell_, neighbours_.pairs()); }
   /// In the order of the State it began with; positions wrapped into the box.
   State state() const;
 
@@ -91,22 +95,21 @@ class Dynamics {
   /// dv/dt of grain i, from its force and the velocity the force was computed with.
   Quad acceleration(std::size_t i) const;
   double advance_grains(const Cell& next);
-  void assemble(int threads);
   void update_list(double lookahead);
-  void deal_out();
-  /// One thread adds to forces, which must be zero.
-  void compute_forces();
+  /// Adds to forces, which must be zero.
+  void add_forces();
+  void catch_up() const;
 
   Material material_;
   ContactLaw law_;
   Cell cell_;
-  Grains grains_;
+  mutable Grains grains_;        ///< of several threads, as they were when somebody last looked
   Neighbours neighbours_;
   double dt_ = 0;
   double time_;
   std::uint64_t steps_;
-  std::shared_ptr<ThreadPool> team_;  ///< only of several threads; copies take turns with it
-  std::vector<Share> shares_;         ///< one for each of them; scratch
+  std::optional<Team> team_;     ///< only of several threads
+  mutable bool behind_ = false;  ///< grains_, of the team
 };
 
 /// A time step: `fraction` of the contact duration of two grains of the smallest radius present, us.

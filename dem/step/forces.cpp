@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "grainlaw/dem/numbers/simd_targets.hpp"
+#include "grainlaw/dem/step/shares.hpp"
 // Compiled once per instruction set; the best one that the machine has is taken at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "grainlaw/dem/step/forces.cpp"
@@ -275,21 +276,17 @@ void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& c
    pairs.crossing, shifts.data(), grains.force.data());
 }
 
-void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share,
-                    Grains& grains) {
+void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share) {
   const std::array<Quad, 27> shifts = cell.shifts();
-  const auto begin = share.force.begin() + share.first, end = share.force.begin() + share.last;
-  std::fill(begin, end, Quad{});
   const auto add = [&](const Groups& within, const CrossingPairs& crossing) {
     HWY_DYNAMIC_DISPATCH(add_forces)
-    (law, grains, cell, within, crossing, shifts.data(), share.force.data());
+    (law, share.grains, cell, within, crossing, shifts.data(), share.grains.force.data());
   };
   add({{}, nullptr, 0, 0}, share.halo);
   const std::span<const GroupedPairs::Group> groups = pairs.within.groups;
   add({groups.subspan(share.first_group, share.last_group - share.first_group), pairs.within.partner.data(),
-       grains.count(), pairs.within.reach},
+       share.grains.count(), pairs.within.reach},
       share.crossing);
-  std::copy(begin, end, grains.force.begin() + share.first);
 }
 
 }  // namespace grainlaw::dem

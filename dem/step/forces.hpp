@@ -5,9 +5,10 @@
 #include "grainlaw/dem/packing/grains.hpp"
 #include "grainlaw/dem/step/contact_law.hpp"
 #include "grainlaw/dem/step/pairs.hpp"
-#include "grainlaw/dem/step/shares.hpp"
 
 namespace grainlaw::dem {
+
+struct Share;
 
 /// How many pairs the loops compute at a time.
 std::size_t force_lanes();
@@ -17,9 +18,8 @@ std::size_t force_lanes();
 void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains);
 /// Adds them to what grains.force holds, which advance() leaves at zero.
 void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains);
-/// The same as contact_forces for the grains of a share, to the last bit; other shares may be at work at the
-/// same time.
-void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share,
-                    Grains& grains);
+/// The same for the grains of a share, to the last bit. What it adds to the foreign ones among share.grains means
+/// nothing.
+void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share);
 
 }  // namespace grainlaw::dem

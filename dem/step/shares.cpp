@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
+
+#include "grainlaw/dem/step/forces.hpp"
 
 namespace grainlaw::dem {
 
@@ -33,19 +37,19 @@ class InOrder {
   std::array<std::size_t, 8> order_;
 };
 
-/// The pairs of the groups before this share's whose partners lie in it, in the order in which the loop over
+/// The pairs of the groups from `first_group` to this share's whose partners lie in it, in the order in which the loop over
 /// the groups adds their forces: that through all groups, as many lanes at a time.
-void deal_halo(const GroupedPairs& all, std::size_t lanes, Share& share) {
+void deal_halo(const GroupedPairs& all, std::size_t first_group, std::size_t lanes, Share& share) {
   constexpr auto width = static_cast<std::uint32_t>(GroupedPairs::width);
   const std::array<std::size_t, 8> order = order_of_lanes(lanes);
   InOrder halo(share.halo, lanes);
-  for (std::size_t g = 0; g < share.first_group; ++g) {
+  for (std::size_t g = first_group; g < share.first_group; ++g) {
     const GroupedPairs::Group& group = all.groups[g];
     for (std::size_t begin = 0; begin < width; begin += lanes)
       for (std::uint32_t row = group.first; row < group.last; row += width)
         for (std::size_t n = begin; n < begin + lanes; ++n) {
           const std::uint32_t j = all.partner[row + order[n]];
-          if (j >= share.first && j < share.last) halo.push(group.grain[order[n]], j);
+          if (share.owns(j)) halo.push(group.grain[order[n]], j);
         }
   }
 }
@@ -54,15 +58,30 @@ void deal_crossing(const CrossingPairs& all, Share& share) {
   CrossingPairs& crossing = share.crossing;
   crossing.pairs.clear();
   for (std::size_t p = 0; p < all.pairs.size(); p += CrossingPairs::width) {
-    const auto mine = [&](const CrossingPairs::Pair& pair) {
-      return (pair.i >= share.first && pair.i < share.last) || (pair.j >= share.first && pair.j < share.last);
-    };
+    const auto mine = [&](const CrossingPairs::Pair& pair) { return share.owns(pair.i) || share.owns(pair.j); };
     const auto* pair = &all.pairs[p];
     if (std::none_of(pair, pair + CrossingPairs::width, mine)) continue;
     for (std::size_t k = 0; k < CrossingPairs::width; ++k)
       crossing.pairs.push_back(mine(pair[k]) ? pair[k]
                                              : CrossingPairs::Pair{pair[k].i, pair[k].i, Cell::home_image});
   }
+}
+
+/// Grains of other shares in its pairs; within the box, only groups from `first_group` on have any.
+void list_foreign(const GroupedPairs& all, std::size_t first_group, std::size_t grains, Share& share) {
+  constexpr std::uint32_t bits = 64;
+  std::vector<std::uint64_t> marked((grains + bits - 1) / bits);
+  const auto mark = [&](std::uint32_t i) {
+    if (!share.owns(i)) marked[i / bits] |= std::uint64_t{1} << i % bits;
+  };
+  for (const CrossingPairs* list : {&share.halo, &share.crossing})
+    for (const CrossingPairs::Pair& pair : list->pairs) mark(pair.i), mark(pair.j);
+  for (std::size_t g = first_group; g < share.last_group; ++g)
+    for (std::uint32_t p = all.groups[g].first; p < all.groups[g].last; ++p) mark(all.partner[p]);
+  share.foreign.clear();
+  for (std::uint32_t word = 0; word < marked.size(); ++word)
+    for (std::uint64_t left = marked[word]; left != 0; left &= left - 1)
+      share.foreign.push_back(word * bits + static_cast<std::uint32_t>(std::countr_zero(left)));
 }
 
 }  // namespace
@@ -85,9 +104,78 @@ void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t
   };
   share.first_group = group_of(share.first);
   share.last_group = group_of(share.last);
-  share.force.resize(grains);
-  deal_halo(pairs.within, lanes, share);
+  // Whose partners reach so far: whole runs, as groups are not in order within them.
+  const auto first_to_reach = [&](std::uint32_t grain) {
+    return group_of(grain - std::min(grain, pairs.within.reach) / block * block);
+  };
+  deal_halo(pairs.within, first_to_reach(share.first), lanes, share);
   deal_crossing(pairs.crossing, share);
+  list_foreign(pairs.within, std::max(share.first_group, first_to_reach(share.last)), grains, share);
+}
+
+Team::Team(int threads)
+    : pool_(std::make_shared<ThreadPool>(threads)), shares_(static_cast<std::size_t>(threads)) {}
+
+void Team::deal(const Pairs& pairs, const Grains& grains, bool moved) {
+  each([&](std::size_t t) {
+    Share& share = shares_[t];
+    dem::deal(pairs, grains.count(), t, shares_.size(), force_lanes(), share);
+    share.inbox.resize(2 * share.foreign.size());
+    if (moved) share.grains = grains;
+  });
+  each([&](std::size_t t) { post(t); });
+}
+
+/// Leaves what others need of its grains in their inboxes.
+void Team::post(std::size_t from) {
+  const Share& own = shares_[from];
+  for (Share& other : shares_) {
+    const auto begin = other.foreign.begin(), end = std::lower_bound(begin, other.foreign.end(), own.last);
+    for (auto i = std::lower_bound(begin, end, own.first); i != end; ++i) {
+      const auto k = static_cast<std::size_t>(i - begin);
+      other.inbox[2 * k] = own.grains.place[*i];
+      other.inbox[2 * k + 1] = own.grains.motion[*i];
+    }
+  }
+}
+
+double Team::advance(const Stride& stride, const ListReach& list) {
+  std::vector<double> excess(shares_.size());
+  each([&](std::size_t t) {
+    excess[t] = dem::advance(stride, list, shares_[t].first, shares_[t].last, shares_[t].grains);
+    post(t);
+  });
+  double worst = -1;
+  for (const double share : excess) {
+    if (std::isnan(share)) return share;
+    worst = std::max(worst, share);
+  }
+  return worst;
+}
+
+void Team::add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell) {
+  each([&](std::size_t t) {
+    Share& share = shares_[t];
+    for (std::size_t k = 0; k < share.foreign.size(); ++k) {
+      share.grains.place[share.foreign[k]] = share.inbox[2 * k];
+      share.grains.motion[share.foreign[k]] = share.inbox[2 * k + 1];
+    }
+    dem::add_contact_forces(law, pairs, cell, share);
+  });
+}
+
+void Team::gather(Grains& grains) const {
+  each([&](std::size_t t) {
+    const Share& share = shares_[t];
+    const auto take = [&](const Quads& from, Quads& to) {
+      std::copy(from.begin() + share.first, from.begin() + share.last, to.begin() + share.first);
+    };
+    take(share.grains.place, grains.place);
+    take(share.grains.motion, grains.motion);
+    take(share.grains.half, grains.half);
+    take(share.grains.force, grains.force);
+    take(share.grains.acceleration, grains.acceleration);
+  });
 }
 
 }  // namespace grainlaw::dem

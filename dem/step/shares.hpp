@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "grainlaw/dem/packing/grains.hpp"
+#include "grainlaw/dem/step/advance.hpp"
+#include "grainlaw/dem/step/contact_law.hpp"
 #include "grainlaw/dem/step/pairs.hpp"
+#include "grainlaw/element/thread_pool.hpp"
 
 namespace grainlaw::dem {
 
@@ -17,12 +21,46 @@ struct Share {
   std::size_t first_group = 0, last_group = 0;  ///< their groups in the list
   CrossingPairs halo;                           ///< pairs of earlier groups with partners in here
   CrossingPairs crossing;                       ///< those pairs that have a grain in here
-  Quads force;                                  ///< of all grains, but right only for its own
+  std::vector<std::uint32_t> foreign;           ///< grains of other shares in all of its pairs, rising
+  Grains grains;  ///< right for its own; of the foreign ones, place and motion are when forces are added
+  Quads inbox;    ///< place and motion of each foreign grain, as the share that it belongs to left them
+
+  bool owns(std::uint32_t grain) const { return grain >= first && grain < last; }
 };
 
 /// Share `index` of `shares`, of `grains` grains, for loops that compute so many pairs at a time as `lanes`
-/// (4 or 8): in what order they add forces depends on it.
+/// (4 or 8): in what order they add forces depends on it. Leaves the share's grains and inbox as they were.
 void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t shares, std::size_t lanes,
           Share& share);
+
+/// The shares of one packing and the threads that work on them. Each thread keeps its grains in arrays that no
+/// other reads: what others need of them it leaves in their inboxes, line by line, so that a step fetches from
+/// another core no more than that, and in one go. Copies of a team take turns with its threads.
+class Team {
+ public:
+  /// Throws std::system_error where the system has no more threads.
+  explicit Team(int threads);
+
+  int threads() const { return pool_->threads(); }
+
+  /// The list of pairs is new, and where `moved` is set, `grains` are in another order or state than the shares.
+  void deal(const Pairs& pairs, const Grains& grains, bool moved);
+  /// As dem::advance of all grains.
+  double advance(const Stride& stride, const ListReach& list);
+  /// As dem::add_contact_forces to all grains, to the last bit.
+  void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell);
+  /// All grains as the shares have them.
+  void gather(Grains& grains) const;
+
+ private:
+  template <class F>
+  void each(F&& f) const {
+    pool_->run([&](int t) { f(static_cast<std::size_t>(t)); });
+  }
+  void post(std::size_t from);
+
+  std::shared_ptr<ThreadPool> pool_;
+  std::vector<Share> shares_;
+};
 
 }  // namespace grainlaw::dem
