@@ -95,7 +95,7 @@ double Dynamics::advance_grains(const Cell& next) {
 void Dynamics::update_list(double lookahead) {
   catch_up();
   const std::uint64_t sorts = neighbours_.sorts();
-  neighbours_.update(grains_, cell_, lookahead);
+  neighbours_.update(grains_, cell_, lookahead, team_ ? &team_->pool() : nullptr);
   if (team_) team_->deal(neighbours_.pairs(), grains_, neighbours_.sorts() != sorts);
 }
 

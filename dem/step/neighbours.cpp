@@ -54,6 +54,57 @@ bool near(const Quad& a, const Quad& b, const Quad& shift) {
   return x * x + y * y + z * z < reach * reach;
 }
 
+/// The partners of some grains, one grain after the other.
+struct ByGrain {
+  std::uint32_t first;                      ///< grain
+  const std::vector<std::uint32_t>&begin, &partner;
+
+  std::uint32_t count(std::uint32_t i) const { return begin[i - first + 1] - begin[i - first]; }
+  const std::uint32_t* of(std::uint32_t i) const { return partner.data() + begin[i - first]; }
+};
+
+void add_group(const ByGrain& pairs, const std::uint32_t* grain, std::uint32_t grains, GroupedPairs& to) {
+  GroupedPairs::Group group{};
+  std::uint32_t most = 0;
+  for (std::uint32_t k = 0; k < GroupedPairs::width; ++k) {
+    group.grain[k] = grain[k < grains ? k : 0];
+    if (k < grains) most = std::max(most, pairs.count(grain[k]));
+  }
+  group.first = static_cast<std::uint32_t>(to.partner.size());
+  group.last = group.first + most * static_cast<std::uint32_t>(GroupedPairs::width);
+  to.partner.resize(group.last);
+  for (std::uint32_t k = 0; k < GroupedPairs::width; ++k) {
+    const std::uint32_t i = group.grain[k], own = k < grains ? pairs.count(i) : 0;
+    const std::uint32_t* const from = pairs.of(i);
+    std::uint32_t* at = &to.partner[group.first + k];
+    for (std::uint32_t n = 0; n < most; ++n, at += GroupedPairs::width) *at = n < own ? from[n] : i;
+  }
+  to.groups.push_back(group);
+}
+
+/// Groups grains up to `end` that lie side by side and have about as many partners.
+void group(const ByGrain& pairs, std::uint32_t end, GroupedPairs& to) {
+  to.groups.clear();
+  to.partner.clear();
+  to.count = pairs.begin.back();
+  constexpr std::uint32_t block = GroupedPairs::block;
+  std::array<std::uint32_t, block> sorted{};
+  for (std::uint32_t first = pairs.first; first < end; first += block) {
+    const std::uint32_t last = std::min(first + block, end);
+    // By the number of partners, most first; those without any are left out.
+    std::array<std::uint32_t, most_told_apart + 2> begin{};
+    const auto rank = [&](std::uint32_t i) {
+      return most_told_apart - std::min(pairs.count(i), most_told_apart);
+    };
+    for (std::uint32_t i = first; i < last; ++i) ++begin[rank(i) + 1];
+    for (std::uint32_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
+    const std::uint32_t with_any = begin[most_told_apart];
+    for (std::uint32_t i = first; i < last; ++i) sorted[begin[rank(i)]++] = i;
+    for (std::uint32_t k = 0; k < with_any; k += GroupedPairs::width)
+      add_group(pairs, &sorted[k], std::min<std::uint32_t>(GroupedPairs::width, with_any - k), to);
+  }
+}
+
 }  // namespace
 
 bool Neighbours::outdated(const Grains& grains, const Cell& cell) const {
@@ -70,63 +121,87 @@ bool Neighbours::outdated(const Cell& cell, double excess) const {
   return excess > 0 || least_stretch(cell.deformation_from(inner_cell_.edges())) < 1 - box_budget;
 }
 
-void Neighbours::update(Grains& grains, Cell& cell, double lookahead) {
-  make_budgets(grains, lookahead);
-  if (!outer_covers(grains, cell)) {
+void Neighbours::cut(std::size_t grains, ThreadPool* team) {
+  parts_.resize(team == nullptr ? 1 : static_cast<std::size_t>(team->threads()));
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    parts_[k].first = GroupedPairs::begin_of(grains, k, parts_.size());
+    parts_[k].last = GroupedPairs::begin_of(grains, k + 1, parts_.size());
+  }
+}
+
+template <class F>
+void Neighbours::each(ThreadPool* team, F&& f) {
+  if (team == nullptr) return f(parts_[0]);
+  team->run([&](int t) { f(parts_[static_cast<std::size_t>(t)]); });
+}
+
+void Neighbours::update(Grains& grains, Cell& cell, double lookahead, ThreadPool* team) {
+  cut(grains.count(), team);
+  make_budgets(grains, lookahead, team);
+  if (!outer_covers(grains, cell, team)) {
     sort_and_list(grains, cell);
-    make_budgets(grains, lookahead);    // in the new order, and within the new skin
-    if (!outer_covers(grains, cell)) {  // too narrow a box for flyers
+    make_budgets(grains, lookahead, team);    // in the new order, and within the new skin
+    if (!outer_covers(grains, cell, team)) {  // too narrow a box for flyers
       for (const std::uint32_t i : flyers_) budget_[i] = flight_share * outer_skin_;
       flyers_.clear();
     }
   }
-  filter(grains, cell);
+  filter(grains, cell, team);
   ++updates_;
 }
 
-void Neighbours::make_budgets(const Grains& grains, double lookahead) {
+void Neighbours::make_budgets(const Grains& grains, double lookahead, ThreadPool* team) {
   const double least = std::min(rest_budget * unit_, 0.25 * flight_share * outer_skin_);
   const double most = flight_share * outer_skin_;
+  const auto flight_of = [&](std::uint32_t i) {
+    const Quad& v = grains.motion[i];
+    return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * lookahead;
+  };
   budget_.resize(grains.count());
+  each(team, [&](Part& part) {
+    part.flyers.clear();
+    for (std::uint32_t i = part.first; i < part.last; ++i) {
+      const double flight = flight_of(i);
+      budget_[i] = std::min(least + flight, most);
+      if (flight > most && part.flyers.size() <= most_flyers) part.flyers.push_back(i);
+    }
+  });
   flyers_.clear();
-  bool few = true;
-  for (std::uint32_t i = 0; i < grains.count(); ++i) {
-    const Quad& v = grains.motion[i];
-    const double flight = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * lookahead;
-    budget_[i] = std::min(least + flight, most);
-    if (flight <= most || !few) continue;
-    few = flyers_.size() < most_flyers;
-    if (few) flyers_.push_back(i);
-  }
-  if (!few) flyers_.clear();
-  for (const std::uint32_t i : flyers_) {
-    const Quad& v = grains.motion[i];
-    budget_[i] =
-        least + std::min(std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * lookahead, longest_flight * unit_);
-  }
+  for (const Part& part : parts_) flyers_.insert(flyers_.end(), part.flyers.begin(), part.flyers.end());
+  if (flyers_.size() > most_flyers) flyers_.clear();
+  for (const std::uint32_t i : flyers_) budget_[i] = least + std::min(flight_of(i), longest_flight * unit_);
 }
 
 /// Whether every pair that the inner list must hold is in the outer one: for all i, with e the shrink since
 /// the outer list was made, |w_i| + s_i/e_min + r_i (1/e_min - e) <= e skin/2. A few grains for which that
 /// fails join the flyers, whose pairs are not looked for there.
-bool Neighbours::outer_covers(const Grains& grains, const Cell& cell) {
+bool Neighbours::outer_covers(const Grains& grains, const Cell& cell, ThreadPool* team) {
   if (outer_reference_.size() != grains.count()) return false;
   const Mat3 deformation = cell.deformation_from(outer_cell_.edges());
   const double e = least_stretch(deformation), inflate = 1 / (1 - box_budget);
-  auto flyer = flyers_.begin();
-  std::vector<std::uint32_t> flyers;
   // Flyers and their partners must meet through one of the 27 images.
   const double widest = 2 * largest_radius_ + 2 * outer_skin_,
                allowed = 0.5 * (e * cell.narrowest() - widest);
-  for (std::uint32_t i = 0; i < grains.count(); ++i) {
-    const bool flies = flyer != flyers_.end() && *flyer == i;
-    if (flies) ++flyer;
-    const double room = 0.5 * e * outer_skin_ - budget_[i] * inflate - grains.place[i].w * (inflate - e);
-    const double squared = strayed(grains.place[i], outer_reference_[i], deformation);
-    if (!flies && room >= 0 && squared <= room * room) continue;
-    if (flyers.size() == most_flyers || !(std::sqrt(squared) + 2 * budget_[i] <= allowed)) return false;
-    flyers.push_back(i);
+  each(team, [&](Part& part) {
+    auto flyer = std::lower_bound(flyers_.begin(), flyers_.end(), part.first);
+    part.flyers.clear();
+    part.covered = true;
+    for (std::uint32_t i = part.first; i < part.last && part.covered; ++i) {
+      const bool flies = flyer != flyers_.end() && *flyer == i;
+      if (flies) ++flyer;
+      const double room = 0.5 * e * outer_skin_ - budget_[i] * inflate - grains.place[i].w * (inflate - e);
+      const double squared = strayed(grains.place[i], outer_reference_[i], deformation);
+      if (!flies && room >= 0 && squared <= room * room) continue;
+      part.covered = part.flyers.size() < most_flyers && std::sqrt(squared) + 2 * budget_[i] <= allowed;
+      part.flyers.push_back(i);
+    }
+  });
+  std::vector<std::uint32_t> flyers;
+  for (const Part& part : parts_) {
+    if (!part.covered) return false;
+    flyers.insert(flyers.end(), part.flyers.begin(), part.flyers.end());
   }
+  if (flyers.size() > most_flyers) return false;
   flyers_.swap(flyers);
   return true;
 }
@@ -161,18 +236,20 @@ void Neighbours::rebuild(const Grains& grains) {
       .list_pairs(then.place, outer_cell_, outer_skin_, outer_);
   then.place = inner_reference_;
   for (std::size_t i = 0; i < then.count(); ++i) then.place[i].w = grains.place[i].w;
-  filter(then, inner_cell_);
+  cut(then.count(), nullptr);
+  filter(then, inner_cell_, nullptr);
 }
 
-void Neighbours::filter(const Grains& grains, const Cell& cell) {
-  const std::size_t count = grains.count();
-  inner_reference_.resize(count);
+void Neighbours::filter(const Grains& grains, const Cell& cell, ThreadPool* team) {
+  inner_reference_.resize(grains.count());
   const double inflate = 1 / (1 - box_budget);
   // Positions with the grain's reach (r_i + s_i)/e_min, so that one line tells all about a grain.
-  for (std::size_t i = 0; i < count; ++i) {
-    const Quad& p = grains.place[i];
-    inner_reference_[i] = {p.x, p.y, p.z, (p.w + budget_[i]) * inflate};
-  }
+  each(team, [&](const Part& part) {
+    for (std::uint32_t i = part.first; i < part.last; ++i) {
+      const Quad& p = grains.place[i];
+      inner_reference_[i] = {p.x, p.y, p.z, (p.w + budget_[i]) * inflate};
+    }
+  });
   inner_cell_ = cell;
   Quads flying;
   for (const std::uint32_t i : flyers_) {
@@ -180,28 +257,72 @@ void Neighbours::filter(const Grains& grains, const Cell& cell) {
     inner_reference_[i].x = std::numeric_limits<double>::quiet_NaN();  // near to none
   }
   const std::array<Quad, 27> shifts = cell.shifts();
-  near_begin_.resize(count + 1);
-  near_.resize(outer_.partner.size() + 1);
+  each(team, [&](Part& part) {
+    filter_within(part);
+    group({part.first, part.begin, part.near}, part.last, parts_.size() == 1 ? inner_.within : part.within);
+    filter_crossing(part, shifts);
+  });
+  join(team);
+  list_flyers(flying, shifts);
+  inner_.crossing.fill_up();
+  each(team, [&](const Part& part) {
+    for (std::uint32_t i = part.first; i < part.last; ++i) inner_reference_[i].w = budget_[i] * budget_[i];
+  });
+}
+
+void Neighbours::filter_within(Part& part) const {
+  part.begin.resize(part.last - part.first + 1);
+  part.near.resize(outer_.begin[part.last] - outer_.begin[part.first] + 1);
   std::uint32_t n = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = part.first; i < part.last; ++i) {
     const Quad a = inner_reference_[i];
-    near_begin_[i] = n;
+    part.begin[i - part.first] = n;
     for (std::uint32_t p = outer_.begin[i]; p < outer_.begin[i + 1]; ++p) {
       const std::uint32_t j = outer_.partner[p];
-      near_[n] = j;  // kept or overwritten by the next one: no branch to mispredict
+      part.near[n] = j;  // kept or overwritten by the next one: no branch to mispredict
       n += near(a, inner_reference_[j], {}) ? 1u : 0u;
     }
   }
-  near_begin_[count] = n;
-  group();
-  CrossingPairs& crossing = inner_.crossing;
-  crossing.pairs.clear();
-  for (const auto& [i, j, image] : outer_.crossing)
-    if (near(inner_reference_[i], inner_reference_[j], shifts[image]))
-      crossing.pairs.push_back({i, j, image});
-  list_flyers(flying, shifts);
-  crossing.fill_up();
-  for (std::size_t i = 0; i < count; ++i) inner_reference_[i].w = budget_[i] * budget_[i];
+  part.begin.back() = n;
+}
+
+void Neighbours::filter_crossing(Part& part, const std::array<Quad, 27>& shifts) const {
+  const std::size_t k = static_cast<std::size_t>(&part - parts_.data()), all = outer_.crossing.size();
+  part.crossing.clear();
+  for (std::size_t p = all * k / parts_.size(); p < all * (k + 1) / parts_.size(); ++p) {
+    const auto& [i, j, image] = outer_.crossing[p];
+    if (near(inner_reference_[i], inner_reference_[j], shifts[image])) part.crossing.push_back({i, j, image});
+  }
+}
+
+/// One list of what all parts have found, in their order.
+void Neighbours::join(ThreadPool* team) {
+  inner_.crossing.pairs.clear();
+  for (const Part& part : parts_)
+    inner_.crossing.pairs.insert(inner_.crossing.pairs.end(), part.crossing.begin(), part.crossing.end());
+  GroupedPairs& within = inner_.within;
+  within.reach = outer_.reach;
+  if (parts_.size() == 1) return;
+  std::size_t groups = 0, partners = 0;
+  within.count = 0;
+  std::vector<std::size_t> group_begin, partner_begin;
+  for (const Part& part : parts_) {
+    group_begin.push_back(groups), partner_begin.push_back(partners);
+    groups += part.within.groups.size(), partners += part.within.partner.size();
+    within.count += part.within.count;
+  }
+  within.groups.resize(groups);
+  within.partner.resize(partners);
+  each(team, [&](const Part& part) {
+    const auto k = static_cast<std::size_t>(&part - parts_.data());
+    const auto before = static_cast<std::uint32_t>(partner_begin[k]);
+    std::copy(part.within.partner.begin(), part.within.partner.end(), within.partner.begin() + before);
+    auto* to = within.groups.data() + group_begin[k];
+    for (GroupedPairs::Group group : part.within.groups) {
+      group.first += before, group.last += before;
+      *to++ = group;
+    }
+  });
 }
 
 /// The pairs of the grains that fly, looked for among all grains and through all images in which one of them
@@ -233,53 +354,6 @@ void Neighbours::list_flyers(const Quads& flying, const std::array<Quad, 27>& sh
     inner_reference_[flyers_[k]] = a;  // so that the next flyers meet it
     enclose(flyers_[k]);
   }
-}
-
-/// Groups grains that lie side by side and have about as many partners.
-void Neighbours::group() {
-  const auto count = static_cast<std::uint32_t>(near_begin_.size() - 1);
-  GroupedPairs& within = inner_.within;
-  within.groups.clear();
-  within.partner.clear();
-  within.reach = outer_.reach;
-  within.count = near_begin_[count];
-  constexpr std::uint32_t block = GroupedPairs::block;
-  std::array<std::uint32_t, block> sorted{};
-  const auto partners_of = [this](std::uint32_t i) { return near_begin_[i + 1] - near_begin_[i]; };
-  for (std::uint32_t first = 0; first < count; first += block) {
-    const std::uint32_t last = std::min(first + block, count);
-    // By the number of partners, most first; those without any are left out.
-    std::array<std::uint32_t, most_told_apart + 2> begin{};
-    const auto rank = [&](std::uint32_t i) {
-      return most_told_apart - std::min(partners_of(i), most_told_apart);
-    };
-    for (std::uint32_t i = first; i < last; ++i) ++begin[rank(i) + 1];
-    for (std::uint32_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
-    const std::uint32_t with_any = begin[most_told_apart];
-    for (std::uint32_t i = first; i < last; ++i) sorted[begin[rank(i)]++] = i;
-    for (std::uint32_t k = 0; k < with_any; k += GroupedPairs::width)
-      add_group(&sorted[k], std::min<std::uint32_t>(GroupedPairs::width, with_any - k));
-  }
-}
-
-void Neighbours::add_group(const std::uint32_t* grain, std::uint32_t grains) {
-  GroupedPairs& within = inner_.within;
-  GroupedPairs::Group group{};
-  std::uint32_t most = 0;
-  for (std::uint32_t k = 0; k < GroupedPairs::width; ++k) {
-    group.grain[k] = grain[k < grains ? k : 0];
-    if (k < grains) most = std::max(most, near_begin_[grain[k] + 1] - near_begin_[grain[k]]);
-  }
-  group.first = static_cast<std::uint32_t>(within.partner.size());
-  group.last = group.first + most * static_cast<std::uint32_t>(GroupedPairs::width);
-  within.partner.resize(group.last);
-  for (std::uint32_t k = 0; k < GroupedPairs::width; ++k) {
-    const std::uint32_t i = group.grain[k], begin = near_begin_[i];
-    const std::uint32_t own = k < grains ? near_begin_[i + 1] - begin : 0;
-    std::uint32_t* to = &within.partner[group.first + k];
-    for (std::uint32_t n = 0; n < most; ++n, to += GroupedPairs::width) *to = n < own ? near_[begin + n] : i;
-  }
-  within.groups.push_back(group);
 }
 
 }  // namespace grainlaw::dem

@@ -10,6 +10,7 @@
 #include "grainlaw/dem/packing/linked_cells.hpp"
 #include "grainlaw/dem/step/advance.hpp"
 #include "grainlaw/dem/step/pairs.hpp"
+#include "grainlaw/element/thread_pool.hpp"
 
 namespace grainlaw::dem {
 
@@ -37,9 +38,10 @@ class Neighbours {
   }
 
   /// Renews the list; wraps and sorts the grains and reduces the box where the outer list must be renewed
-  /// too. A grain may go `lookahead` us at its speed before the next call. Throws Error if the box is too
-  /// narrow for a grain not to touch its own image, or if two grains lie at the same point.
-  void update(Grains& grains, Cell& cell, double lookahead);
+  /// too. A grain may go `lookahead` us at its speed before the next call. The threads of a team, if any, share
+  /// what is done for each inner list, which comes out the same. Throws Error if the box is too narrow for a
+  /// grain not to touch its own image, or if two grains lie at the same point.
+  void update(Grains& grains, Cell& cell, double lookahead, ThreadPool* team = nullptr);
 
   const Pairs& pairs() const { return inner_; }
   std::size_t outer_pairs() const { return outer_.count(); }
@@ -56,21 +58,35 @@ class Neighbours {
   void rebuild(const Grains& grains);
 
  private:
-  void make_budgets(const Grains& grains, double lookahead);
-  bool outer_covers(const Grains& grains, const Cell& cell);
+  /// What one thread finds among a run of the grains, and a share of the pairs through faces.
+  struct Part {
+    std::uint32_t first = 0, last = 0;
+    std::vector<std::uint32_t> flyers;
+    bool covered = true;                     ///< by the outer list
+    std::vector<std::uint32_t> begin, near;  ///< the filtered pairs, grain by grain
+    GroupedPairs within;                     ///< the same interleaved, where there is more than one part
+    std::vector<CrossingPairs::Pair> crossing;
+  };
+  void cut(std::size_t grains, ThreadPool* team);
+  /// Calls f(part) for each, on a thread of its own.
+  template <class F>
+  void each(ThreadPool* team, F&& f);
+
+  void make_budgets(const Grains& grains, double lookahead, ThreadPool* team);
+  bool outer_covers(const Grains& grains, const Cell& cell, ThreadPool* team);
   void list_flyers(const Quads& flying, const std::array<Quad, 27>& shifts);
   void sort_and_list(Grains& grains, Cell& cell);
   double outer_range() const { return 2 * largest_radius_ + outer_skin_; }
-  void filter(const Grains& grains, const Cell& cell);
-  void group();
-  void add_group(const std::uint32_t* grain, std::uint32_t grains);
+  void filter(const Grains& grains, const Cell& cell, ThreadPool* team);
+  void filter_within(Part& part) const;
+  void filter_crossing(Part& part, const std::array<Quad, 27>& shifts) const;
+  void join(ThreadPool* team);
 
   double unit_, largest_radius_;
   double outer_skin_ = 0;
   NearPairs outer_;
   Pairs inner_;
-  std::vector<std::uint32_t> near_begin_,
-      near_;                           ///< the filtered pairs grain by grain, before they are interleaved
+  std::vector<Part> parts_;            ///< scratch, one for each thread
   std::vector<std::uint32_t> flyers_;  ///< whose pairs are looked for among all grains; rising
   std::vector<double> budget_;         ///< s_i, mm
   Quads inner_reference_;              ///< X | s_i^2, of the inner list

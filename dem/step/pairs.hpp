@@ -1,6 +1,7 @@
 // The list of pairs that may touch, each pair once, and the walk over those that do.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -28,6 +29,12 @@ struct GroupedPairs {
   std::vector<std::uint32_t> partner;  ///< a place that is filled up holds the grain itself
   std::size_t count = 0;               ///< without what fills up
   std::uint32_t reach = 0;             ///< partner - grain is at most so much
+
+  /// The first grain of share k of so many, all of which are whole runs.
+  static std::uint32_t begin_of(std::size_t grains, std::size_t k, std::size_t shares) {
+    const std::size_t runs = (grains + block - 1) / block;
+    return static_cast<std::uint32_t>(std::min(grains, runs * k / shares * block));
+  }
 
   /// Calls f(i, j) for every pair.
   template <class F>

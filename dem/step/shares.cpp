@@ -89,12 +89,8 @@ void list_foreign(const GroupedPairs& all, std::size_t first_group, std::size_t 
 void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t shares, std::size_t lanes,
           Share& share) {
   constexpr std::size_t block = GroupedPairs::block;
-  const std::size_t blocks = (grains + block - 1) / block;
-  const auto begin_of = [&](std::size_t k) {
-    return static_cast<std::uint32_t>(std::min(grains, blocks * k / shares * block));
-  };
-  share.first = begin_of(index);
-  share.last = begin_of(index + 1);
+  share.first = GroupedPairs::begin_of(grains, index, shares);
+  share.last = GroupedPairs::begin_of(grains, index + 1, shares);
   const auto& groups = pairs.within.groups;
   const auto group_of = [&](std::uint32_t grain) {
     return static_cast<std::size_t>(

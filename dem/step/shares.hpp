@@ -42,6 +42,7 @@ class Team {
   explicit Team(int threads);
 
   int threads() const { return pool_->threads(); }
+  ThreadPool& pool() { return *pool_; }
 
   /// The list of pairs is new, and where `moved` is set, `grains` are in another order or state than the shares.
   void deal(const Pairs& pairs, const Grains& grains, bool moved);
