@@ -103,7 +103,7 @@ class Dynamics {
   Material material_;
   ContactLaw law_;
   Cell cell_;
-  mutable Grains grains_;        ///< of several threads, as they were when somebody last looked
+  mutable Grains grains_;  ///< of several threads, as they were when somebody last looked
   Neighbours neighbours_;
   double dt_ = 0;
   double time_;

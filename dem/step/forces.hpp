@@ -18,8 +18,8 @@ std::size_t force_lanes();
 void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains);
 /// Adds them to what grains.force holds, which advance() leaves at zero.
 void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains);
-/// The same for the grains of a share, to the last bit. What it adds to the foreign ones among share.grains means
-/// nothing.
+/// The same for the grains of a share, to the last bit. What it adds to the foreign ones among share.grains
+/// means nothing.
 void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share);
 
 }  // namespace grainlaw::dem

@@ -56,7 +56,7 @@ bool near(const Quad& a, const Quad& b, const Quad& shift) {
 
 /// The partners of some grains, one grain after the other.
 struct ByGrain {
-  std::uint32_t first;                      ///< grain
+  std::uint32_t first;  ///< grain
   const std::vector<std::uint32_t>&begin, &partner;
 
   std::uint32_t count(std::uint32_t i) const { return begin[i - first + 1] - begin[i - first]; }

@@ -38,9 +38,9 @@ class Neighbours {
   }
 
   /// Renews the list; wraps and sorts the grains and reduces the box where the outer list must be renewed
-  /// too. A grain may go `lookahead` us at its speed before the next call. The threads of a team, if any, share
-  /// what is done for each inner list, which comes out the same. Throws Error if the box is too narrow for a
-  /// grain not to touch its own image, or if two grains lie at the same point.
+  /// too. A grain may go `lookahead` us at its speed before the next call. The threads of a team, if any,
+  /// share what is done for each inner list, which comes out the same. Throws Error if the box is too narrow
+  /// for a grain not to touch its own image, or if two grains lie at the same point.
   void update(Grains& grains, Cell& cell, double lookahead, ThreadPool* team = nullptr);
 
   const Pairs& pairs() const { return inner_; }

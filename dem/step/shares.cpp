@@ -37,8 +37,8 @@ class InOrder {
   std::array<std::size_t, 8> order_;
 };
 
-/// The pairs of the groups from `first_group` to this share's whose partners lie in it, in the order in which the loop over
-/// the groups adds their forces: that through all groups, as many lanes at a time.
+/// The pairs of the groups from `first_group` to this share's whose partners lie in it, in the order in which
+/// the loop over the groups adds their forces: that through all groups, as many lanes at a time.
 void deal_halo(const GroupedPairs& all, std::size_t first_group, std::size_t lanes, Share& share) {
   constexpr auto width = static_cast<std::uint32_t>(GroupedPairs::width);
   const std::array<std::size_t, 8> order = order_of_lanes(lanes);
@@ -58,7 +58,9 @@ void deal_crossing(const CrossingPairs& all, Share& share) {
   CrossingPairs& crossing = share.crossing;
   crossing.pairs.clear();
   for (std::size_t p = 0; p < all.pairs.size(); p += CrossingPairs::width) {
-    const auto mine = [&](const CrossingPairs::Pair& pair) { return share.owns(pair.i) || share.owns(pair.j); };
+    const auto mine = [&](const CrossingPairs::Pair& pair) {
+      return share.owns(pair.i) || share.owns(pair.j);
+    };
     const auto* pair = &all.pairs[p];
     if (std::none_of(pair, pair + CrossingPairs::width, mine)) continue;
     for (std::size_t k = 0; k < CrossingPairs::width; ++k)
@@ -102,7 +104,8 @@ void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t
   share.last_group = group_of(share.last);
   // Whose partners reach so far: whole runs, as groups are not in order within them.
   const auto first_to_reach = [&](std::uint32_t grain) {
-    return group_of(grain - std::min(grain, pairs.within.reach) / block * block);
+    return group_of((grain - std::min(grain, pairs.within.reach)) / GroupedPairs::block *
+                    GroupedPairs::block);
   };
   deal_halo(pairs.within, first_to_reach(share.first), lanes, share);
   deal_crossing(pairs.crossing, share);

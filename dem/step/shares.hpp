@@ -33,9 +33,9 @@ struct Share {
 void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t shares, std::size_t lanes,
           Share& share);
 
-/// The shares of one packing and the threads that work on them. Each thread keeps its grains in arrays that no
-/// other reads: what others need of them it leaves in their inboxes, line by line, so that a step fetches from
-/// another core no more than that, and in one go. Copies of a team take turns with its threads.
+/// The shares of one packing and the threads that work on them. Each thread keeps its grains in arrays that
+/// no other reads: what others need of them it leaves in their inboxes, line by line, so that a step fetches
+/// from another core no more than that, and in one go. Copies of a team take turns with its threads.
 class Team {
  public:
   /// Throws std::system_error where the system has no more threads.
@@ -44,7 +44,8 @@ class Team {
   int threads() const { return pool_->threads(); }
   ThreadPool& pool() { return *pool_; }
 
-  /// The list of pairs is new, and where `moved` is set, `grains` are in another order or state than the shares.
+  /// The list of pairs is new, and where `moved` is set, `grains` are in another order or state than the
+  /// shares.
   void deal(const Pairs& pairs, const Grains& grains, bool moved);
   /// As dem::advance of all grains.
   double advance(const Stride& stride, const ListReach& list);
