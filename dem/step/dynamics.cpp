@@ -78,7 +78,7 @@ void Dynamics::step(const Mat3& edges, const Mat3& gradient) {
                 " us after its start; measure.time_step (or time_step_gas) must be smaller");
   cell_ = next;
   if (neighbours_.outdated(cell_, excess)) update_list(planned_steps * dt_);
-  add_forces();
+  if (!team_) add_contact_forces(law_, neighbours_.pairs(), cell_, grains_);
   time_ += dt_;
   ++steps_;
 }
@@ -89,24 +89,20 @@ double Dynamics::advance_grains(const Cell& next) {
                       next.tilted() || cell_.tilted() || !list.deformation.is_diagonal()};
   if (!team_) return advance(stride, list, grains_);
   behind_ = true;
-  return team_->advance(stride, list);
+  return team_->advance(law_, neighbours_.pairs(), cell_, stride, list);
 }
 
 void Dynamics::update_list(double lookahead) {
-  catch_up();
+  if (behind_) team_->gather(grains_);
   const std::uint64_t sorts = neighbours_.sorts();
   neighbours_.update(grains_, cell_, lookahead, team_ ? &team_->pool() : nullptr);
   if (team_) team_->deal(neighbours_.pairs(), grains_, neighbours_.sorts() != sorts);
 }
 
-void Dynamics::add_forces() {
-  if (!team_) return add_contact_forces(law_, neighbours_.pairs(), cell_, grains_);
-  team_->add_contact_forces(law_, neighbours_.pairs(), cell_);
-  behind_ = true;
-}
-
 void Dynamics::catch_up() const {
-  if (behind_) team_->gather(grains_);
+  if (!behind_) return;
+  team_->add_contact_forces(law_, neighbours_.pairs(), cell_);
+  team_->gather(grains_);
   behind_ = false;
 }
 

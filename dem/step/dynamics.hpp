@@ -96,8 +96,6 @@ class Dynamics {
   Quad acceleration(std::size_t i) const;
   double advance_grains(const Cell& next);
   void update_list(double lookahead);
-  /// Adds to forces, which must be zero.
-  void add_forces();
   void catch_up() const;
 
   Material material_;
@@ -108,8 +106,8 @@ class Dynamics {
   double dt_ = 0;
   double time_;
   std::uint64_t steps_;
-  std::optional<Team> team_;     ///< only of several threads
-  mutable bool behind_ = false;  ///< grains_, of the team
+  mutable std::optional<Team> team_;  ///< only of several threads
+  mutable bool behind_ = false;       ///< grains_, of the team
 };
 
 /// A time step: `fraction` of the contact duration of two grains of the smallest radius present, us.

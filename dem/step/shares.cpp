@@ -119,31 +119,47 @@ void Team::deal(const Pairs& pairs, const Grains& grains, bool moved) {
   each([&](std::size_t t) {
     Share& share = shares_[t];
     dem::deal(pairs, grains.count(), t, shares_.size(), force_lanes(), share);
-    share.inbox.resize(2 * share.foreign.size());
+    for (auto& inbox : share.inbox) inbox.resize(share.foreign.size());
     if (moved) share.grains = grains;
   });
-  each([&](std::size_t t) { post(t); });
+  each([&](std::size_t t) { send(t, box_); });
 }
 
 /// Leaves what others need of its grains in their inboxes.
-void Team::post(std::size_t from) {
+void Team::send(std::size_t from, std::size_t box) {
   const Share& own = shares_[from];
   for (Share& other : shares_) {
     const auto begin = other.foreign.begin(), end = std::lower_bound(begin, other.foreign.end(), own.last);
     for (auto i = std::lower_bound(begin, end, own.first); i != end; ++i) {
-      const auto k = static_cast<std::size_t>(i - begin);
-      other.inbox[2 * k] = own.grains.place[*i];
-      other.inbox[2 * k + 1] = own.grains.motion[*i];
+      const Quad &x = own.grains.place[*i], &v = own.grains.motion[*i];
+      other.inbox[box][static_cast<std::size_t>(i - begin)] = {x.x, x.y, x.z, v.x, v.y, v.z};
     }
   }
 }
 
-double Team::advance(const Stride& stride, const ListReach& list) {
+void Team::take(Share& share) const {
+  const auto& inbox = share.inbox[box_];
+  for (std::size_t k = 0; k < inbox.size(); ++k) {
+    Quad &x = share.grains.place[share.foreign[k]], &v = share.grains.motion[share.foreign[k]];
+    x = {inbox[k][0], inbox[k][1], inbox[k][2], x.w};
+    v = {inbox[k][3], inbox[k][4], inbox[k][5], v.w};
+  }
+}
+
+double Team::advance(const ContactLaw& law, const Pairs& pairs, const Cell& cell, const Stride& stride,
+                     const ListReach& list) {
   std::vector<double> excess(shares_.size());
   each([&](std::size_t t) {
-    excess[t] = dem::advance(stride, list, shares_[t].first, shares_[t].last, shares_[t].grains);
-    post(t);
+    Share& share = shares_[t];
+    if (due_) {
+      take(share);
+      dem::add_contact_forces(law, pairs, cell, share);
+    }
+    excess[t] = dem::advance(stride, list, share.first, share.last, share.grains);
+    send(t, 1 - box_);
   });
+  box_ = 1 - box_;
+  due_ = true;
   double worst = -1;
   for (const double share : excess) {
     if (std::isnan(share)) return share;
@@ -153,14 +169,12 @@ double Team::advance(const Stride& stride, const ListReach& list) {
 }
 
 void Team::add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell) {
+  if (!due_) return;
   each([&](std::size_t t) {
-    Share& share = shares_[t];
-    for (std::size_t k = 0; k < share.foreign.size(); ++k) {
-      share.grains.place[share.foreign[k]] = share.inbox[2 * k];
-      share.grains.motion[share.foreign[k]] = share.inbox[2 * k + 1];
-    }
-    dem::add_contact_forces(law, pairs, cell, share);
+    take(shares_[t]);
+    dem::add_contact_forces(law, pairs, cell, shares_[t]);
   });
+  due_ = false;
 }
 
 void Team::gather(Grains& grains) const {

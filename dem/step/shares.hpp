@@ -1,6 +1,7 @@
 // How several threads share one step, so that its result does not depend on how many they are.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -23,7 +24,9 @@ struct Share {
   CrossingPairs crossing;                       ///< those pairs that have a grain in here
   std::vector<std::uint32_t> foreign;           ///< grains of other shares in all of its pairs, rising
   Grains grains;  ///< right for its own; of the foreign ones, place and motion are when forces are added
-  Quads inbox;    ///< place and motion of each foreign grain, as the share that it belongs to left them
+  /// Where each foreign grain is, and its motion, as the share that it belongs to left them; of this step and
+  /// of the one before, which others may still read.
+  std::array<std::vector<std::array<double, 6>>, 2> inbox;
 
   bool owns(std::uint32_t grain) const { return grain >= first && grain < last; }
 };
@@ -35,7 +38,8 @@ void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t
 
 /// The shares of one packing and the threads that work on them. Each thread keeps its grains in arrays that
 /// no other reads: what others need of them it leaves in their inboxes, line by line, so that a step fetches
-/// from another core no more than that, and in one go. Copies of a team take turns with its threads.
+/// from another core no more than that, and in one go. Forces are added when the grains move on, or when
+/// somebody looks, so that the threads meet once in a step. Copies of a team take turns with its threads.
 class Team {
  public:
   /// Throws std::system_error where the system has no more threads.
@@ -47,9 +51,11 @@ class Team {
   /// The list of pairs is new, and where `moved` is set, `grains` are in another order or state than the
   /// shares.
   void deal(const Pairs& pairs, const Grains& grains, bool moved);
-  /// As dem::advance of all grains.
-  double advance(const Stride& stride, const ListReach& list);
-  /// As dem::add_contact_forces to all grains, to the last bit.
+  /// As dem::advance of all grains, after the forces of the place where they are, in `cell`, where they are
+  /// due: they are from now on.
+  double advance(const ContactLaw& law, const Pairs& pairs, const Cell& cell, const Stride& stride,
+                 const ListReach& list);
+  /// As dem::add_contact_forces to all grains, to the last bit, where they are due.
   void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell);
   /// All grains as the shares have them.
   void gather(Grains& grains) const;
@@ -59,10 +65,13 @@ class Team {
   void each(F&& f) const {
     pool_->run([&](int t) { f(static_cast<std::size_t>(t)); });
   }
-  void post(std::size_t from);
+  void send(std::size_t from, std::size_t box);
+  void take(Share& share) const;
 
   std::shared_ptr<ThreadPool> pool_;
   std::vector<Share> shares_;
+  std::size_t box_ = 0;  ///< which inbox is to be read next
+  bool due_ = false;     ///< forces have not been added
 };
 
 }  // namespace grainlaw::dem
