@@ -90,7 +90,7 @@ void list_foreign(const GroupedPairs& all, std::size_t first_group, std::size_t 
 
 void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t shares, std::size_t lanes,
           Share& share) {
-  constexpr std::size_t block = GroupedPairs::block;
+  constexpr std::uint32_t block = GroupedPairs::block;
   share.first = GroupedPairs::begin_of(grains, index, shares);
   share.last = GroupedPairs::begin_of(grains, index + 1, shares);
   const auto& groups = pairs.within.groups;
@@ -104,8 +104,7 @@ void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t
   share.last_group = group_of(share.last);
   // Whose partners reach so far: whole runs, as groups are not in order within them.
   const auto first_to_reach = [&](std::uint32_t grain) {
-    return group_of((grain - std::min(grain, pairs.within.reach)) / GroupedPairs::block *
-                    GroupedPairs::block);
+    return group_of((grain - std::min(grain, pairs.within.reach)) / block * block);
   };
   deal_halo(pairs.within, first_to_reach(share.first), lanes, share);
   deal_crossing(pairs.crossing, share);
