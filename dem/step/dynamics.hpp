@@ -68,7 +68,8 @@ class Dynamics {
   std::uint64_t steps() const { return steps_; }
   std::size_t count() const { return grains_.count(); }
   int threads() const { return team_ ? team_->threads() : 1; }
-  /// Sorted in space, not as in the State.
+  /// Sorted in space, not as in the State. Several threads keep the grains to themselves until somebody
+  /// looks: ask again after a step.
   const Grains& grains() const {
     catch_up();
     return grains_;
