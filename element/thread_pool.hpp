@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <thread>
@@ -66,14 +67,21 @@ class ThreadPool {
     }
   }
 
+  /// How long a wait looks again and again before it asks to be woken: longer than one thread measures alone.
+  static constexpr std::chrono::microseconds awake{200};
+
   template <class T>
   static void wait_while(const std::atomic<T>& what, T value) {
-    constexpr int looks = 4000;  // some 50 us
-    for (int n = 0; n < looks; ++n) {
-      if (what.load(std::memory_order_acquire) != value) return;
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point begin;
+    for (int round = 0; round == 0 || Clock::now() - begin < awake; ++round) {
+      for (int look = 0; look < 64; ++look) {
+        if (what.load(std::memory_order_acquire) != value) return;
 #if defined(__x86_64__)
-      __builtin_ia32_pause();
+        __builtin_ia32_pause();
 #endif
+      }
+      if (round == 0) begin = Clock::now();
     }
     what.wait(value, std::memory_order_acquire);
   }
