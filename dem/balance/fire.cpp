@@ -17,7 +17,8 @@ constexpr int patience = 5;  // steps downhill before the step grows
 }  // namespace
 
 // Grains of mass 1: the velocity, in `motion`, is a displacement per unit of pseudo time.
-Fire::Fire(StaticPacking& packing) : packing_(packing), unit_(std::sqrt(1 / packing.law().stiffness(0))) {}
+Fire::Fire(StaticPacking& packing)
+    : packing_(packing), unit_(std::sqrt(1 / packing.law().typical_stiffness())) {}
 
 void Fire::start() {
   Field& v = packing_.grains().motion;

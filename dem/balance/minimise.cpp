@@ -27,7 +27,7 @@ Goal::Goal(const StaticPacking& packing, const MinimiseOptions& options)
 double Goal::rounding_floor(const StaticPacking& packing, const Balance& balance) const {
   const Vec3 heights = packing.cell().heights();
   return rounded * std::numeric_limits<double>::epsilon() * std::max({heights[0], heights[1], heights[2]}) *
-         packing.law().stiffness(0) / balance.mean_force;
+         packing.law().typical_stiffness() / balance.mean_force;
 }
 
 bool Goal::ends(const StaticPacking& packing, MinimiseResult& result) const {

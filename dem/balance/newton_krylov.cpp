@@ -54,7 +54,7 @@ void NewtonKrylov::hold_rattlers() {
 /// Conjugate gradients for H x = F, x in grains().motion, r_ what is left of F.
 void NewtonKrylov::find_direction(double share) {
   hessian_.build(packing_.network(), packing_.count(), &packing_.backbone());
-  preconditioner_.build(hessian_, floor_share * packing_.law().stiffness(0));
+  preconditioner_.build(hessian_, floor_share * packing_.law().typical_stiffness());
   rattlers_.clear();
   for (std::uint32_t i = 0; i < packing_.count(); ++i)
     if (!packing_.backbone().holds(i)) rattlers_.push_back(i);

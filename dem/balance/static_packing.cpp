@@ -10,14 +10,13 @@ namespace grainlaw::dem {
 
 StaticPacking::StaticPacking(const Material& material, const State& state)
     : material_(material),
-      law_(ContactLaw::of(material)),
+      law_(ContactLaw::of(material).elastic()),
       cell_(state.box),
       grains_(state, material.rho),
       neighbours_(material.r_mean, grains_.largest_radius()),
       unit_(material.r_mean),
       time_(state.time_us),
       step_(state.step) {
-  law_.gamma = 0;
   std::fill(grains_.motion.begin(), grains_.motion.end(), Quad{});
   neighbours_.update(grains_, cell_, 0);
 }

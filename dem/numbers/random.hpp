@@ -1,5 +1,6 @@
-// Random numbers that are the same on every machine and compiler: own generator, own mappings.
-// xoshiro256** (Blackman and Vigna 2018), seeded by splitmix64; no std distributions.
+// Random numbers that are the same on every machine and compiler: own generator, own mappings. Only normal()
+// takes a logarithm, from the C library, whose last bit may differ elsewhere. xoshiro256** (Blackman and
+// Vigna 2018), seeded by splitmix64; no std distributions.
 #pragma once
 
 #include <array>

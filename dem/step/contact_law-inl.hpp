@@ -21,6 +21,10 @@ struct LinearContact {
   bool damped() const { return gamma != 0; }
   /// d(force)/d(overlap), ug/us^2.
   double stiffness(double /*overlap*/) const { return k; }
+  /// About how stiff contacts are, ug/us^2, > 0: the unit of tolerances and of preconditioners.
+  double typical_stiffness() const { return k; }
+  /// What is left of it where nothing moves.
+  LinearContact elastic() const { return {k, 0}; }
 
   static LinearContact of(const Material& material) { return {material.k, material.gamma}; }
 };

@@ -78,7 +78,7 @@ FloppyModes floppy_modes(const StaticPacking& packing, const FloppyOptions& opti
   FloppyModes result;
   if (packing.backbone().grains() == 0) return result;
   const ContactNetwork springs = springs_of(packing);
-  const double k = packing.law().stiffness(0);
+  const double k = packing.law().typical_stiffness();
   ContactHessian hessian;
   hessian.build(springs, packing.count());
   SixSystems systems(springs, packing.count(), floor_share * k);

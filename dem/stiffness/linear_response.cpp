@@ -125,7 +125,7 @@ LinearResponse linear_response(StaticPacking& packing, const LinearResponseOptio
   for (std::size_t c = 0; c < network.count; ++c)
     add_dyad(response.prestress, network.force[c] / network.normal[c].w / volume, Block(network, c).branch());
   response.affine = second_order(network, volume, nullptr);
-  SixSystems systems(network, grains, floor_share * packing.law().stiffness(0));
+  SixSystems systems(network, grains, floor_share * packing.law().typical_stiffness());
   SixSystems::Options solver;
   solver.residual = options.residual;
   solver.most_iterations = options.most_iterations;

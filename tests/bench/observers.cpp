@@ -2,9 +2,9 @@
 // Usage: grainlaw_bench_observers [COUNT] [ROUNDS]
 //
 // Prints the time of a whole test, measured and as explained; the bare scene against the kernel's own loop;
-// and a step of the bare scene, a row of the standard columns and what each observer alone adds to a row,
-// measured and as explained. Processor seconds of this thread, medians over the rounds; ratios round by
-// round, median and range.
+// a step of the bare scene, a row of the standard columns and what each observer alone adds to a row,
+// measured and as explained; and the same test with each other option alone. Processor seconds of this
+// thread, medians over the rounds; ratios round by round, median and range.
 #include <unistd.h>
 
 #include <algorithm>
@@ -98,6 +98,33 @@ void compare_preparation(const std::string& count, const fs::path& dir) {
               count.c_str(), static_cast<double>(summary.particle_steps), spent, said, said / spent);
 }
 
+/// What a scene may ask for besides observers, each alone: segments, and more of `measure`.
+std::map<std::string, dem::Scene> options(const fs::path& snapshot) {
+  const auto with = [&](const std::string& segment, const std::string& measure) {
+    return scene(R"({"preparation": {"snapshot": ")" + snapshot.string() + R"("}, "path": {"segments": [)" +
+                 segment + R"(]}, "measure": {"rows": 20)" + measure + "}}");
+  };
+  const std::string d2 = R"({"mode": "d2", "amount": 0.02})";
+  const auto states = [](int count) {
+    std::string list;
+    for (int k = 1; k <= count; ++k)
+      list +=
+          (k == 1 ? "" : ", ") + (R"({"segment": 0, "eps_dev": )" + std::to_string(0.02 * k / count) + "}");
+    return "[" + list + "]";
+  };
+  const std::string shear_of_tilt =
+      R"({"mode": "components", "strain": [0, 0, 0, 0, 0, 0.0115], "rate": 1.6e-5})";
+  return {{"20 rows alone", with(d2, "")},
+          {"50 snapshots", with(d2, R"(, "snapshots": )" + states(50))},
+          {"10 states of moduli", with(d2, R"(, "moduli": )" + states(10))},
+          {"tilted box", with(shear_of_tilt, "")},
+          {"constant_p", with(R"({"mode": "constant_p", "amount": 0.02})", "")},
+          {"biaxial", with(R"({"mode": "biaxial", "amount": 0.02})", "")},
+          {"triaxial", with(R"({"mode": "triaxial", "amount": 0.02})", "")},
+          {"steered", with(R"({"mode": "d2", "amount": 0.02, "profile": "steered"})", "")},
+          {"quasistatic", with(R"({"mode": "d2", "amount": 0.02, "profile": "quasistatic"})", "")}};
+}
+
 /// One round: each scene once, and once what --explain says of it.
 void measure_round(const fs::path& snapshot, const fs::path& dir, std::uint64_t& steps, Times& spent,
                    Times& said) {
@@ -123,6 +150,10 @@ void measure_round(const fs::path& snapshot, const fs::path& dir, std::uint64_t&
     spent[observer.name].push_back((with - beside) / static_cast<double>(rows + 1));
     said[observer.name].push_back(observer.seconds_per_row);
   }
+  for (const auto& [name, test] : options(snapshot)) {
+    spent[name].push_back(seconds_to_run(test, dir));
+    said[name].push_back(dem::cost_of(test).seconds());
+  }
 }
 
 struct Ratios {
@@ -137,7 +168,7 @@ Ratios ratios_of(const std::vector<double>& over, const std::vector<double>& und
   return {median(ratios), *least, *most};
 }
 
-void print(const Times& spent, const Times& said, std::uint64_t steps) {
+void print(const Times& spent, const Times& said, std::uint64_t steps, const fs::path& snapshot) {
   const Ratios bare = ratios_of(spent.at("bare"), spent.at("kernel"));
   std::printf("bare scene over the kernel's own loop: %.3f (%.3f-%.3f)\n", bare.middle, bare.least,
               bare.most);
@@ -152,6 +183,8 @@ void print(const Times& spent, const Times& said, std::uint64_t steps) {
   line("bare", static_cast<double>(steps));
   line("standard columns", 1);
   for (const auto& name : dem::observe::names()) line(name, 1);
+  std::printf("whole tests, each with one option:\n");
+  for (const auto& [name, test] : options(snapshot)) line(name, 1);
 }
 
 }  // namespace
@@ -166,6 +199,6 @@ int main(int argc, char** argv) {
   std::uint64_t steps = 0;
   for (int round = 0; round < rounds; ++round)
     measure_round(dir / "prepare" / "snapshots.h5", dir / "run", steps, spent, said);
-  print(spent, said, steps);
+  print(spent, said, steps, dir / "prepare" / "snapshots.h5");
   fs::remove_all(dir);
 }
