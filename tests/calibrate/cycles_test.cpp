@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -128,6 +129,18 @@ TEST(ThirdCycle, TwoPackingsSayLessOfAThirdThanMemory) {
   }
   EXPECT_NEAR(others, 0.0058, 1e-4);
   EXPECT_NEAR(memory, 0.0047, 1e-4);
+}
+
+/// At the other densities a packing that came after the fit: what the law foretells of it.
+TEST(ThirdCycle, MemoryForetellsAPackingThatCameLater) {
+  for (const auto& [nu, least_gain, most_error] :
+       {std::tuple{"0.685", 6.0, 0.029}, std::tuple{"0.711", 4.8, 0.0105}}) {
+    const std::string test = std::string("third-cycle/d2-cycle-") + nu + "-s3";
+    SCOPED_TRACE(test);
+    const Errors coupled = errors_of(test, "coupled"), memory = errors_of(test, "memory");
+    EXPECT_GT(coupled.P, least_gain * memory.P);
+    EXPECT_LT(memory.P, most_error);
+  }
 }
 
 }  // namespace
