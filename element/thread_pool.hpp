@@ -5,9 +5,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <memory>
+#include <exception>
 #include <thread>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace grainlaw {
@@ -19,6 +20,7 @@ class ThreadPool {
   /// Throws std::system_error where the system has no more threads.
   explicit ThreadPool(int threads) {
     try {
+      failures_.resize(static_cast<std::size_t>(threads));
       for (int t = 1; t < threads; ++t) others_.emplace_back([this, t] { serve(t); });
     } catch (...) {
       dismiss();
@@ -31,15 +33,27 @@ class ThreadPool {
 
   int threads() const { return static_cast<int>(others_.size()) + 1; }
 
-  /// Calls f(0) ... f(threads - 1), each on a thread of its own, and returns when all have. f must not throw.
+  /// Calls f(0) ... f(threads - 1), each on a thread of its own, and returns when all have. Throws what one
+  /// of them has thrown, then.
   template <class F>
   void run(F&& f) {
-    using Function = std::remove_reference_t<F>;
-    start([](void* function, int t) { (*static_cast<Function*>(function))(t); }, std::addressof(f));
-    f(0);
+    const auto guarded = [&](int t) {
+      try {
+        f(t);
+      } catch (...) {
+        failures_[static_cast<std::size_t>(t)] = std::current_exception();
+      }
+    };
+    using Function = std::remove_reference_t<decltype(guarded)>;
+    start([](const void* function, int t) { (*static_cast<Function*>(function))(t); }, &guarded);
+    guarded(0);
     for (int left = left_.load(std::memory_order_acquire); left != 0;
          left = left_.load(std::memory_order_acquire))
       wait_while(left_, left);
+    std::exception_ptr first;
+    for (std::exception_ptr& failure : failures_)
+      if (std::exception_ptr thrown = std::exchange(failure, nullptr); first == nullptr) first = thrown;
+    if (first != nullptr) std::rethrow_exception(first);
   }
 
  private:
@@ -48,9 +62,9 @@ class ThreadPool {
     for (std::thread& other : others_) other.join();
   }
 
-  using Job = void (*)(void*, int);
+  using Job = void (*)(const void*, int);
 
-  void start(Job job, void* function) {
+  void start(Job job, const void* function) {
     job_ = job;
     function_ = function;
     left_.store(static_cast<int>(others_.size()), std::memory_order_relaxed);
@@ -87,9 +101,10 @@ class ThreadPool {
   }
 
   Job job_ = nullptr;
-  void* function_ = nullptr;
+  const void* function_ = nullptr;
   alignas(64) std::atomic<unsigned> turn_{0};  ///< how often work was given out; it may wrap around
   alignas(64) std::atomic<int> left_{0};       ///< how many of the others are still at it
+  std::vector<std::exception_ptr> failures_;   ///< of each thread
   std::vector<std::thread> others_;
 };
 

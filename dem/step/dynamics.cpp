@@ -41,17 +41,24 @@ Dynamics::Dynamics(const Material& material, const State& state, int threads)
       grains_(state, material.rho),
       neighbours_(material.r_mean, grains_.largest_radius()),
       time_(state.time_us),
-      steps_(state.step) {
-  if (threads > 1) team_.emplace(threads);
+      steps_(state.step),
+      threads_(std::max(threads, 1)) {
   update_list(0);
 }
 
 Dynamics::Dynamics(const Material& material, ArchiveReader& archive, int threads)
-    : material_(material), law_(ContactLaw::of(material)), neighbours_(material.r_mean, 0) {
+    : material_(material),
+      law_(ContactLaw::of(material)),
+      neighbours_(material.r_mean, 0),
+      threads_(std::max(threads, 1)) {
   keep(*this, archive);
   neighbours_.rebuild(grains_);
-  if (threads < 2) return;
-  team_.emplace(threads);
+  if (dt_ > 0) deal_out();
+}
+
+void Dynamics::deal_out() {
+  if (threads_ == 1) return;
+  if (!team_) team_.emplace(threads_);
   team_->deal(neighbours_.pairs(), grains_, true);
 }
 
@@ -67,7 +74,7 @@ void Dynamics::start_flow(double dt, const Mat3& gradient) {
     grains_.half[i] = {v.x - 0.5 * dt * now.x, v.y - 0.5 * dt * now.y, v.z - 0.5 * dt * now.z, 0};
     grains_.acceleration[i] = now;
   }
-  if (team_) team_->deal(neighbours_.pairs(), grains_, true);
+  deal_out();
 }
 
 void Dynamics::step(const Mat3& edges, const Mat3& gradient) {

@@ -67,9 +67,10 @@ class Dynamics {
   double time() const { return time_; }  ///< us
   std::uint64_t steps() const { return steps_; }
   std::size_t count() const { return grains_.count(); }
-  int threads() const { return team_ ? team_->threads() : 1; }
+  int threads() const { return threads_; }
   /// Sorted in space, not as in the State. Several threads keep the grains to themselves until somebody
-  /// looks: ask again after a step.
+  /// looks, by this or anything below: a reference lags behind from the next step on until then, and two
+  /// threads must not look at one Dynamics at a time.
   const Grains& grains() const {
     catch_up();
     return grains_;
@@ -97,6 +98,7 @@ class Dynamics {
   Quad acceleration(std::size_t i) const;
   double advance_grains(const Cell& next);
   void update_list(double lookahead);
+  void deal_out();
   void catch_up() const;
 
   Material material_;
@@ -107,7 +109,8 @@ class Dynamics {
   double dt_ = 0;
   double time_;
   std::uint64_t steps_;
-  mutable std::optional<Team> team_;  ///< only of several threads
+  int threads_;
+  mutable std::optional<Team> team_;  ///< of several threads, from the start on
   mutable bool behind_ = false;       ///< grains_, of the team
 };
 

@@ -163,7 +163,7 @@ void Neighbours::make_budgets(const Grains& grains, double lookahead, ThreadPool
     for (std::uint32_t i = part.first; i < part.last; ++i) {
       const double flight = flight_of(i);
       budget_[i] = std::min(least + flight, most);
-      if (flight > most && part.flyers.size() <= most_flyers) part.flyers.push_back(i);
+      if (!(flight <= most) && part.flyers.size() <= most_flyers) part.flyers.push_back(i);
     }
   });
   flyers_.clear();
@@ -286,23 +286,24 @@ void Neighbours::filter_within(Part& part) const {
   part.begin.back() = n;
 }
 
-void Neighbours::filter_crossing(Part& part, const std::array<Quad, 27>& shifts) const {
+void Neighbours::filter_crossing(Part& part, const std::array<Quad, 27>& shifts) {
   const std::size_t k = static_cast<std::size_t>(&part - parts_.data()), all = outer_.crossing.size();
-  part.crossing.clear();
+  std::vector<CrossingPairs::Pair>& to = parts_.size() == 1 ? inner_.crossing.pairs : part.crossing;
+  to.clear();
   for (std::size_t p = all * k / parts_.size(); p < all * (k + 1) / parts_.size(); ++p) {
     const auto& [i, j, image] = outer_.crossing[p];
-    if (near(inner_reference_[i], inner_reference_[j], shifts[image])) part.crossing.push_back({i, j, image});
+    if (near(inner_reference_[i], inner_reference_[j], shifts[image])) to.push_back({i, j, image});
   }
 }
 
 /// One list of what all parts have found, in their order.
 void Neighbours::join(ThreadPool* team) {
+  GroupedPairs& within = inner_.within;
+  within.reach = outer_.reach;
+  if (parts_.size() == 1) return;  // it has written into it
   inner_.crossing.pairs.clear();
   for (const Part& part : parts_)
     inner_.crossing.pairs.insert(inner_.crossing.pairs.end(), part.crossing.begin(), part.crossing.end());
-  GroupedPairs& within = inner_.within;
-  within.reach = outer_.reach;
-  if (parts_.size() == 1) return;
   std::size_t groups = 0, partners = 0;
   within.count = 0;
   std::vector<std::size_t> group_begin, partner_begin;

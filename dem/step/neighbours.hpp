@@ -62,10 +62,10 @@ class Neighbours {
   struct Part {
     std::uint32_t first = 0, last = 0;
     std::vector<std::uint32_t> flyers;
-    bool covered = true;                     ///< by the outer list
-    std::vector<std::uint32_t> begin, near;  ///< the filtered pairs, grain by grain
-    GroupedPairs within;                     ///< the same interleaved, where there is more than one part
-    std::vector<CrossingPairs::Pair> crossing;
+    bool covered = true;                        ///< by the outer list
+    std::vector<std::uint32_t> begin, near;     ///< the filtered pairs, grain by grain
+    GroupedPairs within;                        ///< the same interleaved, where there is more than one part
+    std::vector<CrossingPairs::Pair> crossing;  ///< likewise
   };
   void cut(std::size_t grains, ThreadPool* team);
   /// Calls f(part) for each, on a thread of its own.
@@ -79,7 +79,7 @@ class Neighbours {
   double outer_range() const { return 2 * largest_radius_ + outer_skin_; }
   void filter(const Grains& grains, const Cell& cell, ThreadPool* team);
   void filter_within(Part& part) const;
-  void filter_crossing(Part& part, const std::array<Quad, 27>& shifts) const;
+  void filter_crossing(Part& part, const std::array<Quad, 27>& shifts);
   void join(ThreadPool* team);
 
   double unit_, largest_radius_;

@@ -77,7 +77,8 @@ void list_foreign(const GroupedPairs& all, std::size_t first_group, std::size_t 
     if (!share.owns(i)) marked[i / bits] |= std::uint64_t{1} << i % bits;
   };
   for (const CrossingPairs* list : {&share.halo, &share.crossing})
-    for (const CrossingPairs::Pair& pair : list->pairs) mark(pair.i), mark(pair.j);
+    for (const CrossingPairs::Pair& pair : list->pairs)
+      if (pair.i != pair.j) mark(pair.i), mark(pair.j);  // else it fills up a row
   for (std::size_t g = first_group; g < share.last_group; ++g)
     for (std::uint32_t p = all.groups[g].first; p < all.groups[g].last; ++p) mark(all.partner[p]);
   share.foreign.clear();
@@ -119,7 +120,12 @@ void Team::deal(const Pairs& pairs, const Grains& grains, bool moved) {
     Share& share = shares_[t];
     dem::deal(pairs, grains.count(), t, shares_.size(), force_lanes(), share);
     for (auto& inbox : share.inbox) inbox.resize(share.foreign.size());
-    if (moved) share.grains = grains;
+    if (!moved || share.first == share.last) return;
+    share.grains.place = grains.place;
+    share.grains.motion = grains.motion;
+    share.grains.half = grains.half;
+    share.grains.force = grains.force;
+    share.grains.acceleration = grains.acceleration;
   });
   each([&](std::size_t t) { send(t, box_); });
 }

@@ -23,7 +23,8 @@ struct Share {
   CrossingPairs halo;                           ///< pairs of earlier groups with partners in here
   CrossingPairs crossing;                       ///< those pairs that have a grain in here
   std::vector<std::uint32_t> foreign;           ///< grains of other shares in all of its pairs, rising
-  Grains grains;  ///< right for its own; of the foreign ones, place and motion are when forces are added
+  Grains grains;  ///< right for its own, without id; of the foreign ones, place and motion are when forces
+                  ///< are added
   /// Where each foreign grain is, and its motion, as the share that it belongs to left them; of this step and
   /// of the one before, which others may still read.
   std::array<std::vector<std::array<double, 6>>, 2> inbox;

@@ -3,16 +3,19 @@
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
-#include <set>
 #include <string>
 #include <vector>
 
+#include "grainlaw/dem/files/archive.hpp"
 #include "grainlaw/dem/step/forces.hpp"
+#include "grainlaw/element/error.hpp"
 #include "grainlaw/element/thread_pool.hpp"
 #include "packings.hpp"
 
@@ -72,24 +75,65 @@ void expect_same_list(const Pairs& a, const Pairs& b) {
 
 // In what order forces are added depends on the instruction set.
 TEST(Shares, TheirNumberChangesNoBitOfTheMotion) {
-  std::set<std::size_t> lanes;
   for (const std::int64_t target : {HWY_SCALAR, HWY_AVX2, HWY_AVX3}) {
     if (target != HWY_SCALAR && (hwy::SupportedTargets() & target) == 0) continue;
     hwy::SetSupportedTargetsForTest(target);
-    if (lanes.insert(force_lanes()).second) {
-      const Flow alone = flow(1);
-      EXPECT_GT(alone.flights, 0u);
-      for (const int threads : {2, 3, 5}) {
-        SCOPED_TRACE(std::to_string(threads) + " threads, " + std::to_string(force_lanes()) + " lanes");
-        const Flow shared = flow(threads);
-        EXPECT_TRUE(shared.end == alone.end);
-        EXPECT_EQ(shared.stress, alone.stress);
-        EXPECT_EQ(shared.energy, alone.energy);
-        expect_same_list(shared.pairs, alone.pairs);
-      }
+    const Flow alone = flow(1);
+    EXPECT_GT(alone.flights, 0u);
+    for (const int threads : {2, 5}) {
+      SCOPED_TRACE(std::to_string(threads) + " threads, " + hwy::TargetName(target));
+      const Flow shared = flow(threads);
+      EXPECT_TRUE(shared.end == alone.end);
+      EXPECT_EQ(shared.stress, alone.stress);
+      EXPECT_EQ(shared.energy, alone.energy);
+      expect_same_list(shared.pairs, alone.pairs);
     }
     hwy::SetSupportedTargetsForTest(0);
   }
+}
+
+/// Where a flow comes to that is copied, kept and read back, and started again, each in the middle of it.
+std::vector<State> eventful(const Material& m, const Mat3& gradient, int threads, int threads_of_reader) {
+  Dynamics dynamics(m, test::squeezed(m, 700, 4, 0.7, 0.2), threads);
+  double dt = time_step(Material{}, dynamics.grains().smallest_radius(), 0.1);
+  const auto go = [&](Dynamics& d, const Mat3& with) {
+    for (int n = 0; n < 30; ++n) d.step(test::deformation(with, dt) * d.cell().edges(), with);
+  };
+  std::vector<State> states;
+  dynamics.start_flow(dt, gradient);
+  go(dynamics, gradient);
+  Dynamics copy = dynamics;
+  const auto file =
+      std::filesystem::temp_directory_path() / ("grainlaw-shares-" + std::to_string(::getpid()));
+  ArchiveWriter writer(file);
+  writer(dynamics);
+  writer.finish();
+  go(dynamics, gradient);
+  go(copy, gradient);
+  ArchiveReader reader(file);
+  Dynamics read(m, reader, threads_of_reader);
+  reader.finish();
+  std::filesystem::remove(file);
+  go(read, gradient);
+  for (const Dynamics* d : {&dynamics, &copy, &read}) states.push_back(d->state());
+  EXPECT_TRUE(states[0] == states[1] && states[0] == states[2]);
+  dt *= 0.7;
+  dynamics.start_flow(dt, 0.5 * gradient);
+  go(dynamics, 0.5 * gradient);
+  states.push_back(dynamics.state());
+  return states;
+}
+
+TEST(Shares, ComeToTheSameThroughCopiesCheckpointsAndStarts) {
+  Material undamped;
+  undamped.gamma = 0;
+  for (const Material& m : {Material{}, undamped})
+    for (const Mat3& gradient : {Mat3::diagonal({5e-3, -5e-3, 1e-3}),
+                                 Mat3{{5e-3, 2e-3, -1e-3}, {5e-4, -5e-3, 2e-3}, {0, -2e-3, 1e-3}}}) {
+      const std::vector<State> alone = eventful(m, gradient, 1, 1);
+      EXPECT_TRUE(eventful(m, gradient, 2, 3) == alone);
+      EXPECT_TRUE(eventful(m, gradient, 3, 1) == alone);
+    }
 }
 
 // What a step has of another share are the places and motions of the grains that it lists there, and no more.
@@ -163,6 +207,24 @@ TEST(ThreadPool, RunsEveryPartEachTime) {
   std::array<int, 3> sum{};
   for (int n = 1; n <= 200; ++n) team.run([&](int t) { sum[static_cast<std::size_t>(t)] += n * (t + 1); });
   EXPECT_EQ(sum, (std::array<int, 3>{20100, 40200, 60300}));
+}
+
+TEST(ThreadPool, ThrowsWhatAPartThrewOnceAllHaveMet) {
+  ThreadPool team(3);
+  for (const int bad : {0, 2}) {
+    std::array<int, 3> done{};
+    EXPECT_THROW(team.run([&](int t) {
+      if (t == bad) throw Error("out of grains");
+      done[static_cast<std::size_t>(t)] = 1;
+    }),
+                 Error);
+    EXPECT_EQ(done[0] + done[1] + done[2], 2);
+  }
+  int sum = 0;
+  team.run([&](int t) {
+    if (t == 0) sum = 1;
+  });
+  EXPECT_EQ(sum, 1);
 }
 
 }  // namespace
