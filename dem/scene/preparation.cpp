@@ -57,7 +57,9 @@ void push_apart(State& state) {
   std::fill(grains.motion.begin(), grains.motion.end(), Quad{});
   Neighbours neighbours(grains.largest_radius(), grains.largest_radius());
   neighbours.update(grains, cell, 0);
-  const ContactLaw push{1, 0};  // the force of a contact is its overlap
+  Material soft;
+  soft.k = 1;
+  const ContactLaw push = ContactLaw::of(soft).elastic();  // of linear contacts, the force is the overlap
   for (int step = 0; any_overlap(grains, cell, neighbours.pairs()); ++step) {
     if (step == most_pushes)
       throw Error("the gas is too dense to place " + std::to_string(state.count()) +

@@ -22,6 +22,7 @@ HWY_BEFORE_NAMESPACE();
 namespace grainlaw::dem::HWY_NAMESPACE {
 
 namespace of_vectors {
+using grainlaw::dem::root;  // of numbers; that of vectors is found by its argument
 #include "grainlaw/dem/step/contact_law-inl.hpp"
 }  // namespace of_vectors
 
