@@ -34,6 +34,14 @@ double step_of_contact_error(double error) {
   return 2 / std::numbers::pi * std::sin(y);
 }
 
+namespace {
+/// As many as have grains to move.
+int busy_threads(int wanted, std::size_t grains) {
+  const std::size_t runs = (grains + GroupedPairs::block - 1) / GroupedPairs::block;
+  return std::clamp(wanted, 1, static_cast<int>(std::clamp<std::size_t>(runs, 1, 1024)));
+}
+}  // namespace
+
 Dynamics::Dynamics(const Material& material, const State& state, int threads)
     : material_(material),
       law_(ContactLaw::of(material)),
@@ -42,16 +50,14 @@ Dynamics::Dynamics(const Material& material, const State& state, int threads)
       neighbours_(material.r_mean, grains_.largest_radius()),
       time_(state.time_us),
       steps_(state.step),
-      threads_(std::max(threads, 1)) {
+      threads_(busy_threads(threads, state.count())) {
   update_list(0);
 }
 
 Dynamics::Dynamics(const Material& material, ArchiveReader& archive, int threads)
-    : material_(material),
-      law_(ContactLaw::of(material)),
-      neighbours_(material.r_mean, 0),
-      threads_(std::max(threads, 1)) {
+    : material_(material), law_(ContactLaw::of(material)), neighbours_(material.r_mean, 0) {
   keep(*this, archive);
+  threads_ = busy_threads(threads, count());
   neighbours_.rebuild(grains_);
   if (dt_ > 0) deal_out();
 }

@@ -38,8 +38,8 @@ namespace grainlaw::dem {
 /// measurements, states) belongs to one time and one box.
 class Dynamics {
  public:
-  /// `threads` share each step; how many they are changes no bit of it. Throws Error as Neighbours::update
-  /// does.
+  /// `threads` share each step, but no more than there are runs of grains (GroupedPairs::block) for; how many
+  /// they are changes no bit of it. Throws Error as Neighbours::update does.
   Dynamics(const Material& material, const State& state, int threads = 1);
   /// As it was when it was kept.
   Dynamics(const Material& material, ArchiveReader& archive, int threads = 1);
@@ -109,7 +109,7 @@ class Dynamics {
   double dt_ = 0;
   double time_;
   std::uint64_t steps_;
-  int threads_;
+  int threads_ = 1;
   mutable std::optional<Team> team_;  ///< of several threads, from the start on
   mutable bool behind_ = false;       ///< grains_, of the team
 };

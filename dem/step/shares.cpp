@@ -120,7 +120,7 @@ void Team::deal(const Pairs& pairs, const Grains& grains, bool moved) {
     Share& share = shares_[t];
     dem::deal(pairs, grains.count(), t, shares_.size(), force_lanes(), share);
     for (auto& inbox : share.inbox) inbox.resize(share.foreign.size());
-    if (!moved || share.first == share.last) return;
+    if (!moved) return;
     share.grains.place = grains.place;
     share.grains.motion = grains.motion;
     share.grains.half = grains.half;

@@ -189,11 +189,12 @@ TEST(Targets, GoApartByRoundingOnly) {
   }
 }
 
-TEST(Shares, MoreThreadsThanBlocksOfGrainsDoNoHarm) {
+TEST(Shares, AreNoMoreThanRunsOfGrains) {
   const Material m;
   const State start = test::squeezed(m, 61, 4, 0.7);
   const auto end = [&](int threads) {
     Dynamics dynamics(m, start, threads);
+    EXPECT_EQ(dynamics.threads(), 1);
     dynamics.start(0.02, {});
     for (int n = 0; n < 50; ++n) dynamics.step();
     return dynamics.state();
