@@ -25,16 +25,23 @@ std::string size_text(double bytes) {
   return fmt::format("{:.3g} GB", bytes / 1e9);
 }
 
-std::string terms(const Material& material) {
-  const auto viscosity = [](double value) {
-    return value > 0 ? fmt::format("on, {:.4g} ug/us", value) : std::string("off: it is 0");
+std::string terms(const Material& material, const SceneCost& cost) {
+  const auto line = [](const char* name, const std::string& what) {
+    return fmt::format("  {:<36}{}\n", name, what);
   };
-  return fmt::format(
-      "terms of the motion (no friction, no rotation: grains carry neither)\n"
-      "  contact  k delta               on, k = {:.4g} ug/us^2\n"
-      "  contact  gamma d(delta)/dt     {}\n"
-      "  background  -gamma_b v         {}\n\n",
-      material.k, viscosity(material.gamma), viscosity(material.gamma_b));
+  const auto viscosity = [](double value, const std::string& takes) {
+    return value > 0 ? fmt::format("on, {:.4g} ug/us; {}", value, takes)
+                     : std::string("off: it is 0, and costs nothing");
+  };
+  const auto a_step = [](double seconds) { return short_time(seconds) + " of a step"; };
+  return "terms of the motion (no friction, no rotation: grains carry neither)\n" +
+         line("contact  k delta",
+              fmt::format("on, k = {:.4g} ug/us^2; with the walk through the pairs {}", material.k,
+                          a_step(cost.force_seconds - cost.damping_seconds))) +
+         line("contact  gamma d(delta)/dt", viscosity(material.gamma, a_step(cost.damping_seconds))) +
+         line("background  -gamma_b v",
+              viscosity(material.gamma_b, "a factor of the motion, which takes as long without")) +
+         line("motion and lists of pairs", a_step(cost.motion_seconds)) + "\n";
 }
 
 std::string fields(const SceneCost& cost) {
@@ -50,15 +57,16 @@ std::string fields(const SceneCost& cost) {
 
 std::string stages(const SceneCost& cost) {
   std::string text = "stage                      nu                steps       dt (us)   time\n";
-  for (const auto& [stage, range, seconds] : cost.stages) {
+  for (const auto& [stage, range, seconds, tried, bytes] : cost.stages) {
     const std::string nu = range[0] == range[1] ? fmt::format("{:.4g}", range[0])
                                                 : fmt::format("{:.4g} to {:.4g}", range[0], range[1]);
     text += fmt::format("  {:<24} {:<16} {:>9} {:>12.4g}   {}{}\n", stage.name, nu, stage.stepping.steps,
                         stage.leg.minimises() ? 0 : stage.stepping.dt,
-                        stage.leg.minimises()           ? "about "
-                        : stage.leg.mode == Mode::relax ? "at most "
-                                                        : "",
+                        tried || stage.leg.minimises() ? "about "
+                        : stage.leg.drives()           ? ""
+                                                       : "at most ",
                         short_time(seconds));
+    if (bytes > 0) text += fmt::format("  {:<24} and {} of memory meanwhile\n", "", size_text(bytes));
   }
   return text + fmt::format("  a step on the path: {}, of it contact forces {}, motion and lists {}\n\n",
                             short_time(cost.force_seconds + cost.motion_seconds),
@@ -79,10 +87,15 @@ std::string rows(const SceneCost& cost) {
   for (const auto& observer : cost.observers)
     text += line(observer.name, observer.seconds_per_row, observer.bytes);
   if (cost.observers.empty()) text += "  nothing else: measure.observe is empty\n";
-  text += fmt::format("snapshots: {} of {}\n", cost.snapshots, size_text(cost.snapshot_bytes));
+  text += cost.snapshots == 0
+              ? std::string("snapshots: none\n")
+              : fmt::format("snapshots: {}, each {} and {} on disk\n", cost.snapshots,
+                            short_time(cost.snapshot_seconds), size_text(cost.snapshot_bytes));
+  text += fmt::format("checkpoints: {:.0f}, each {} and {} on disk, where two are kept\n", cost.checkpoints(),
+                      short_time(cost.checkpoint_seconds), size_text(cost.checkpoint_bytes));
   if (cost.moduli > 0)
-    text += fmt::format("moduli: {} states, each about {}: balance and linear response\n", cost.moduli,
-                        short_time(cost.moduli_seconds));
+    text += fmt::format("moduli: {} states, each about {} and {} of memory: balance and linear response\n",
+                        cost.moduli, short_time(cost.moduli_seconds), size_text(cost.moduli_bytes));
   return text + "\n";
 }
 
@@ -90,7 +103,7 @@ std::string rows(const SceneCost& cost) {
 
 std::string explanation(const dem::Scene& scene, const dem::SceneCost& cost) {
   std::string text = fmt::format("{}: {} grains, w = {:.3g}\n\n", scene.file, cost.grains, scene.material.w);
-  text += terms(scene.material) + fields(cost) + stages(cost) + rows(cost);
+  text += terms(scene.material, cost) + fields(cost) + stages(cost) + rows(cost);
   return text + fmt::format("in all: {:.3g} particle-steps, {} of one core like this one now, {} of memory\n",
                             cost.particle_steps(), short_time(cost.seconds()), size_text(cost.bytes()));
 }

@@ -1,6 +1,7 @@
 // The program grainlaw: reads the command line, runs one subcommand and turns its errors into one line and an
 // exit status.
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <csignal>
@@ -112,6 +113,7 @@ int run_command_line(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace grainlaw;
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);  // arrays of large packings go back to the system when they are freed
   std::signal(SIGXFSZ,
               SIG_IGN);  // a file that may not grow is an error like a full disk, not the end of the process
   try {

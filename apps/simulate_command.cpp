@@ -121,7 +121,8 @@ int run(const Arguments& arguments) {
     throw Error("simulate: -o DIR is missing, the directory to make; or --explain, to make none");
   const dem::Scene scene = dem::Scene::load(arguments.scene);
   if (arguments.explain) {
-    write_stdout(explanation(scene, dem::cost_of(scene)));
+    const dem::CostOptions options{threads_of(arguments), arguments.run.checkpoint_every()};
+    write_stdout(explanation(scene, dem::cost_of(scene, options)));
     return all_well;
   }
   const fs::path folder = folder_of(arguments.output), part = folder.string() + ".part";

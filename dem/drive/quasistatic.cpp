@@ -44,7 +44,7 @@ void follow_quasistatic(Dynamics& dynamics, const Leg& leg, const StepPlan& plan
                   (result.balance.jammed ? "; residual must be larger" : ""));
     state.step = n;
     state.passes = result.evaluations + result.products;
-    dynamics = Dynamics(dynamics.material(), packing.state(), dynamics.threads());
+    dynamics.begin_anew(packing.state());
     if (!after_step(n)) return;
   }
 }

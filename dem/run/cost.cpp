@@ -1,11 +1,10 @@
 #include "grainlaw/dem/run/cost.hpp"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <iterator>
+#include <map>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -13,146 +12,15 @@
 #include "grainlaw/dem/numbers/random.hpp"
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/packing/size_distribution.hpp"
-#include "grainlaw/dem/record/row_writer.hpp"
-#include "grainlaw/dem/run/moduli_cost.hpp"
+#include "grainlaw/dem/run/leg_trial.hpp"
+#include "grainlaw/dem/run/trial.hpp"
 #include "grainlaw/dem/run/trial_packing.hpp"
-#include "grainlaw/dem/step/dynamics.hpp"
-#include "grainlaw/dem/step/forces.hpp"
 
 namespace grainlaw::dem {
 
 namespace {
 
-constexpr double trial_seconds = 0.15;  // of steps, at each density
-constexpr std::uint64_t fewest_steps = 40, fewest_rows = 5;
-constexpr std::size_t moduli_grains = 1000;  // at most, where moduli are tried
-
-/// What is allocated, in bytes.
-double heap_bytes() {
-  const auto heap = mallinfo2();
-  return static_cast<double>(heap.uordblks) + static_cast<double>(heap.hblkhd);
-}
-
-/// Seconds of a call, from as many as fit into `budget` seconds; at least `least`.
-template <class F>
-double seconds_of(F&& call, double budget, std::uint64_t least) {
-  const double begin = thread_seconds();
-  std::uint64_t calls = 0;
-  double spent = 0;
-  do {
-    call();
-    ++calls;
-    spent = thread_seconds() - begin;
-  } while (spent < budget || calls < least);
-  return spent / static_cast<double>(calls);
-}
-
-/// Costs per grain in one packing, s.
-struct TrialCost {
-  double nu = 0;
-  double step = 0, force = 0, row = 0;
-  std::vector<double> observers;
-  double contacts = 0, pairs = 0, bytes = 0;
-  double moduli = 0;  ///< of a state, not per grain
-};
-
-class Trial {
- public:
-  /// At the mean rate of `stage` and with its step; where that minimises, with a step of the default.
-  Trial(const Material& material, const State& state, const Stage& stage)
-      : material_(material),
-        dt_(stage.leg.minimises()
-                ? time_step(material, *std::min_element(state.radius.begin(), state.radius.end()),
-                            Measure{}.time_step)
-                : stage.stepping.dt),
-        grains_(static_cast<double>(state.count())),
-        heap_before_(heap_bytes()),
-        dynamics_(material, state) {
-    for (std::size_t c = 0; c < 3; ++c) rate_[c] = -stage.leg.strain[c] / stage.leg.duration;
-    cost_.nu = state.volume_fraction();
-    dynamics_.start(dt_, rate_);
-    step();
-    cost_.bytes = (heap_bytes() - heap_before_) / grains_;
-  }
-
-  void steps() {
-    for (std::uint64_t k = 0; k < fewest_steps / 4; ++k) step();
-    cost_.step = seconds_of([&] { step(); }, trial_seconds, fewest_steps) / grains_;
-    Grains copy = dynamics_.grains();
-    const Pairs& pairs = dynamics_.neighbours().pairs();
-    cost_.force = seconds_of([&] { add_contact_forces(dynamics_.law(), pairs, dynamics_.cell(), copy); },
-                             trial_seconds / 10, 5) /
-                  grains_;
-    cost_.pairs = static_cast<double>(pairs.count()) / grains_;
-  }
-
-  void rows(const std::vector<std::string>& asked) {
-    const Leg leg{};
-    RowWriter writer(material_, {leg}, cost_.nu);
-    const double append = seconds_between_steps([&] { writer.append(dynamics_, 0, 0, 0); });
-    cost_.row = (append + seconds_per_row(writer.record())) / grains_;
-    cost_.contacts = static_cast<double>(dynamics_.measure().contacts) / grains_;
-    const SignConvention sign({leg});
-    for (const std::string& name : asked) {
-      observe::Observers one({name});
-      std::size_t row = 0;
-      Quads velocity;
-      Measurement measured;
-      const auto measure = [&] { velocity = dynamics_.velocities(), measured = dynamics_.measure(); };
-      const auto observe = [&] { one.observe(dynamics_, velocity, measured, material_, sign, 0, row++); };
-      measure();
-      observe();  // the first has nothing to compare with
-      double seconds = seconds_between_steps(observe, measure);
-      for (const auto& table : one.tables())
-        seconds += seconds_of([&] { table.rows.to_csv(); }, 0, 1) / static_cast<double>(row);
-      cost_.observers.push_back(seconds / grains_);
-    }
-  }
-
-  void moduli(const State& base, std::size_t grains) {
-    cost_.moduli = moduli_seconds(material_, base, grains);
-  }
-  const TrialCost& cost() const { return cost_; }
-
- private:
-  /// Seconds of a call after each step and what comes before it, as in a test that writes rows: with what it
-  /// needs no longer in the nearest caches.
-  template <class Call, class Before>
-  double seconds_between_steps(Call&& call, Before&& before) {
-    double spent = 0;
-    std::uint64_t calls = 0;
-    do {
-      step();
-      before();
-      const double begin = thread_seconds();
-      call();
-      spent += thread_seconds() - begin;
-      ++calls;
-    } while (spent < trial_seconds / 10 || calls < fewest_rows);
-    return spent / static_cast<double>(calls);
-  }
-  template <class Call>
-  double seconds_between_steps(Call&& call) {
-    return seconds_between_steps(call, [] {});
-  }
-  /// Of the text of a table.
-  static double seconds_per_row(const Record& table) {
-    return seconds_of([&] { table.to_csv(); }, 0, 1) / static_cast<double>(table.rows());
-  }
-
-  void step() {
-    Vec3 length = dynamics_.cell().length();
-    for (std::size_t c = 0; c < 3; ++c) length[c] *= std::exp(rate_[c] * dt_);
-    dynamics_.step(length, rate_);
-  }
-
-  const Material& material_;
-  double dt_;
-  Vec3 rate_{};
-  double grains_, heap_before_;
-  Dynamics dynamics_;
-  TrialCost cost_;
-};
+constexpr int moduli_states = 3;
 
 /// Cost of a step at volume fraction nu, between the two nearest trials.
 double step_at(const std::vector<TrialCost>& trials, double nu) {
@@ -179,7 +47,7 @@ double bytes_in(const Field&) {
   return sizeof(typename Field::value_type);
 }
 
-std::vector<FieldCost> fields_of(double engine_bytes) {
+std::vector<FieldCost> fields_of(double engine_bytes, double threads_bytes) {
   const Grains g;
   std::vector<FieldCost> fields{{"place and radius", bytes_in(g.place)},
                                 {"velocity, as the forces see it", bytes_in(g.motion)},
@@ -190,9 +58,11 @@ std::vector<FieldCost> fields_of(double engine_bytes) {
   double sum = 0;
   for (const FieldCost& field : fields) sum += field.bytes_per_grain;
   fields.push_back({"lists of pairs, and what keeps them right", std::max(engine_bytes - sum, 0.0)});
+  fields.push_back({"room to sort the grains", bytes_in(g.place) + 3 * sizeof(std::uint32_t)});
   const State s;
   fields.push_back(
       {"state as it is read and written", bytes_in(s.position) + bytes_in(s.velocity) + bytes_in(s.radius)});
+  if (threads_bytes > 0) fields.push_back({"what threads keep to themselves", threads_bytes});
   return fields;
 }
 
@@ -236,7 +106,7 @@ std::vector<StageCost> planned(const Scene& scene, const State& start) {
   for (const Stage& stage : stages) {
     const StrainTensor& strain = stage.leg.strain;
     const double after = nu * std::exp(strain[0] + strain[1] + strain[2]);
-    list.push_back({stage, {nu, after}, 0});
+    list.push_back({stage, {nu, after}});
     nu = after;
   }
   return list;
@@ -265,9 +135,8 @@ std::vector<TrialCost> try_preparation(TrialPacking& packing, const Material& ma
   return trials;
 }
 
-/// `few`: the same with few grains, for the moduli.
-std::vector<TrialCost> try_path(TrialPacking& packing, TrialPacking& few, const Scene& scene,
-                                std::size_t grains, const std::vector<StageCost>& stages) {
+/// The densities between which the path goes.
+std::vector<double> densities(const std::vector<StageCost>& stages) {
   double low = 1, high = 0;
   for (const StageCost& cost : stages)
     if (cost.stage.segment)
@@ -275,21 +144,69 @@ std::vector<TrialCost> try_path(TrialPacking& packing, TrialPacking& few, const 
         low = std::min(low, nu);
         high = std::max(high, nu);
       }
-  std::vector<double> places{low};
-  if (high - low > 0.01) places.push_back(high);
+  if (high - low > 0.01) return {low, high};
+  return {low};
+}
+
+double nearest(double nu, const std::vector<double>& places) {
+  return *std::min_element(places.begin(), places.end(),
+                           [nu](double a, double b) { return std::abs(a - nu) < std::abs(b - nu); });
+}
+
+void take(const std::optional<LegCost>& tried, double size, StageCost& cost) {
+  if (!tried) return;
+  cost.tried = true;
+  cost.seconds = size * tried->seconds;
+  cost.bytes = size * tried->bytes;
+}
+
+/// Tries those stages that need it and lie nearest to `place` among `places`, in `flowing` grains at that
+/// density. Segments that are repeated are tried once.
+void try_stages(const Scene& scene, std::size_t grains, const State& flowing, double place,
+                const std::vector<double>& places, std::vector<StageCost>& stages) {
+  const double size = static_cast<double>(grains) / static_cast<double>(flowing.count());
+  std::map<std::string, std::optional<LegCost>> known;
+  for (StageCost& cost : stages) {
+    if (!cost.stage.segment || !needs_trial(cost.stage) || cost.tried) continue;
+    if (nearest(0.5 * (cost.nu[0] + cost.nu[1]), places) != place) continue;
+    const auto [found, is_new] = known.try_emplace(scene.path.segments[*cost.stage.segment].key);
+    std::optional<LegCost>& tried = found->second;
+    if (is_new) tried = try_leg(scene.material, flowing, cost.stage, Likeness::density);
+    take(tried, size, cost);
+  }
+}
+
+/// Where the path begins with a snapshot, its first stage is tried from that.
+void try_first_stage(const Scene& scene, const State& start, StageCost& first) {
+  if (!first.stage.segment || !needs_trial(first.stage) || start.count() > largest_trial) return;
+  take(try_leg(scene.material, start, first.stage, Likeness::all), 1, first);
+}
+
+std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::size_t grains,
+                                const CostOptions& options, std::vector<StageCost>& stages) {
+  const std::vector<double> places = densities(stages);
+  const Stage main = main_stage(stages, true).stage;
   std::vector<TrialCost> trials;
-  for (const double nu : places) {
-    packing.compress_to(nu);
+  for (const double place : places) {
+    packing.compress_to(place);
     TrialPacking flowing = packing;
     flowing.shear();
-    Trial trial(scene.material, flowing.state(), main_stage(stages, true).stage);
+    flowing.settle();
+    Trial trial(scene.material, flowing.state(), main);
     trial.steps();
     trial.rows(scene.measure.observe);
+    if (!scene.measure.snapshots.empty()) trial.snapshot();
+    trial.checkpoint();
+    if (options.threads > 1) trial.threads(options.threads);
     if (!scene.measure.moduli.empty()) {
-      few.compress_to(nu);
-      trial.moduli(few.base(), grains);
+      Trial base(scene.material, flowing.base(), main);
+      for (int k = 0; k < moduli_states; ++k) {
+        base.steps();
+        trial.moduli(base.state(), grains);
+      }
     }
     trials.push_back(trial.cost());
+    try_stages(scene, grains, flowing.base(), place, places, stages);
   }
   return trials;
 }
@@ -304,17 +221,20 @@ double mean_of(const std::vector<TrialCost>& trials, Value&& value) {
 
 }  // namespace
 
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double SceneCost::seconds() const {
-  double sum = row_seconds * static_cast<double>(rows) + moduli_seconds * static_cast<double>(moduli);
+double SceneCost::seconds_without_checkpoints() const {
+  double sum = row_seconds * static_cast<double>(rows) + moduli_seconds * static_cast<double>(moduli) +
+               snapshot_seconds * static_cast<double>(snapshots);
   for (const ObserverCost& observer : observers) sum += observer.seconds_per_row * static_cast<double>(rows);
   for (const StageCost& stage : stages) sum += stage.seconds;
   return sum;
+}
+
+double SceneCost::checkpoints() const {
+  return checkpoint_every > 0 ? std::floor(seconds_without_checkpoints() / checkpoint_every) : 0;
+}
+
+double SceneCost::seconds() const {
+  return seconds_without_checkpoints() + checkpoints() * checkpoint_seconds;
 }
 
 double SceneCost::particle_steps() const {
@@ -325,41 +245,54 @@ double SceneCost::particle_steps() const {
 }
 
 double SceneCost::bytes() const {
-  double sum = 0;
+  double sum = 0, beside = moduli_bytes;
   for (const FieldCost& field : fields) sum += field.bytes_per_grain * static_cast<double>(grains);
   for (const ObserverCost& observer : observers) sum += observer.bytes;
-  return sum;
+  for (const StageCost& stage : stages) beside = std::max(beside, stage.bytes);
+  return sum + beside;
 }
 
-SceneCost cost_of(const Scene& scene) {
+SceneCost cost_of(const Scene& scene, const CostOptions& options) {
   const State start = start_of(scene);
   std::vector<StageCost> stages = planned(scene, start);
   const auto* own = std::get_if<NewPacking>(&scene.preparation);
-  const NewPacking like = own != nullptr ? *own : NewPacking{};
-  TrialPacking packing(scene.material, start.count(), like);
-  TrialPacking few(scene.material, std::min(start.count(), moduli_grains), like);
+  TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
   std::vector<TrialCost> prepared;
   if (own != nullptr) prepared = try_preparation(packing, scene.material, stages);
-  const std::vector<TrialCost> path = try_path(packing, few, scene, start.count(), stages);
+  try_first_stage(scene, start, stages.front());
+  const std::vector<TrialCost> path = try_path(packing, scene, start.count(), options, stages);
   const double grains = static_cast<double>(start.count());
+  const auto of_all = [&](double TrialCost::*cost) {
+    return grains * mean_of(path, [&](const TrialCost& t) { return t.*cost; });
+  };
+  const auto per_grain = [&](double TrialCost::*cost) { return of_all(cost) / grains; };
   SceneCost cost;
   cost.grains = start.count();
-  cost.contacts_per_grain = mean_of(path, [](const auto& t) { return t.contacts; });
-  cost.pairs_per_grain = mean_of(path, [](const auto& t) { return t.pairs; });
-  cost.force_seconds = grains * mean_of(path, [](const auto& t) { return t.force; });
-  cost.motion_seconds = grains * mean_of(path, [](const auto& t) { return t.step - t.force; });
-  cost.row_seconds = grains * mean_of(path, [](const auto& t) { return t.row; });
+  cost.contacts_per_grain = per_grain(&TrialCost::contacts);
+  cost.pairs_per_grain = per_grain(&TrialCost::pairs);
+  cost.force_seconds = of_all(&TrialCost::force);
+  cost.damping_seconds = of_all(&TrialCost::damping);
+  cost.motion_seconds = std::max(of_all(&TrialCost::step) - cost.force_seconds, 0.0);
+  cost.row_seconds = of_all(&TrialCost::row);
   cost.rows = scene.record_rows();
   cost.snapshots = scene.measure.snapshots.size();
-  cost.moduli = scene.measure.moduli.size();
-  for (const TrialCost& trial : path) cost.moduli_seconds = std::max(cost.moduli_seconds, trial.moduli);
+  cost.snapshot_seconds = of_all(&TrialCost::snapshot);
   cost.snapshot_bytes = grains * 2 * sizeof(Vec3);
-  cost.fields = fields_of(mean_of(path, [](const auto& t) { return t.bytes; }));
+  cost.checkpoint_every = options.checkpoint_every;
+  cost.checkpoint_seconds = of_all(&TrialCost::checkpoint);
+  cost.checkpoint_bytes = of_all(&TrialCost::checkpoint_bytes);
+  cost.moduli = scene.measure.moduli.size();
+  for (const TrialCost& trial : path) {
+    cost.moduli_seconds = std::max(cost.moduli_seconds, trial.moduli.seconds / moduli_states);
+    cost.moduli_bytes = std::max(cost.moduli_bytes, trial.moduli.bytes);
+  }
+  cost.fields = fields_of(per_grain(&TrialCost::engine_bytes), per_grain(&TrialCost::threads_bytes));
   for (StageCost& stage : stages)
-    stage.seconds =
-        static_cast<double>(stage.stage.passes()) *
-        (stage.stage.leg.minimises() ? cost.force_seconds
-                                     : grains * mean_step(stage.stage.segment ? path : prepared, stage));
+    if (!stage.tried)
+      stage.seconds =
+          static_cast<double>(stage.stage.passes()) *
+          (stage.stage.leg.minimises() ? cost.force_seconds
+                                       : grains * mean_step(stage.stage.segment ? path : prepared, stage));
   cost.stages = std::move(stages);
   for (std::size_t k = 0; k < scene.measure.observe.size(); ++k) {
     const std::string& name = scene.measure.observe[k];

@@ -11,9 +11,6 @@
 
 namespace grainlaw::dem {
 
-/// Processor seconds of this thread: a busy machine disturbs them less than the clock on the wall.
-double thread_seconds();
-
 /// Bytes per grain of one field, and what it is for.
 struct FieldCost {
   std::string name;
@@ -24,6 +21,8 @@ struct StageCost {
   Stage stage;
   double nu[2];        ///< volume fraction at begin and end
   double seconds = 0;  ///< without rows; of a relaxation, which may end early, the most
+  bool tried = false;  ///< whether a part of it was run (see try_leg), its steps being known only then
+  double bytes = 0;    ///< held beside the grains while it lasts
 };
 
 struct ObserverCost {
@@ -36,22 +35,37 @@ struct SceneCost {
   std::size_t grains = 0;
   double contacts_per_grain = 0, pairs_per_grain = 0;  ///< in the trial, each pair once
   double force_seconds = 0;                            ///< of a step: contact forces
+  double damping_seconds = 0;                          ///< of these the viscous term
   double motion_seconds = 0;                           ///< of a step: motion and lists
   double row_seconds = 0;                              ///< of a row: the standard columns
   std::size_t rows = 0, snapshots = 0;
-  double snapshot_bytes = 0;  ///< each
-  std::size_t moduli = 0;     ///< states whose moduli are measured
+  double snapshot_seconds = 0, snapshot_bytes = 0;  ///< each
+  double checkpoint_every = 0;                      ///< s
+  double checkpoint_seconds = 0;                    ///< each; without waiting for the disk
+  double checkpoint_bytes = 0;                      ///< on disk, where two are kept
+  std::size_t moduli = 0;                           ///< states whose moduli are measured
   double moduli_seconds = 0;  ///< of each: balance and linear response (dem/run/moduli_cost.hpp)
+  double moduli_bytes = 0;    ///< held meanwhile
   std::vector<FieldCost> fields;
   std::vector<StageCost> stages;
   std::vector<ObserverCost> observers;
 
-  double seconds() const;  ///< of one core, all together
+  double seconds() const;      ///< of one core, all together
+  double checkpoints() const;  ///< that fall into them
   double particle_steps() const;
-  double bytes() const;
+  double bytes() const;  ///< of memory, at most
+
+ private:
+  double seconds_without_checkpoints() const;
+};
+
+/// What a run is told beside its scene (see RunHooks).
+struct CostOptions {
+  int threads = 1;
+  double checkpoint_every = 60;  ///< s
 };
 
 /// Throws Error as run_element_test does for bad input.
-SceneCost cost_of(const Scene& scene);
+SceneCost cost_of(const Scene& scene, const CostOptions& options = {});
 
 }  // namespace grainlaw::dem

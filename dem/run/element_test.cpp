@@ -127,7 +127,7 @@ double ElementTest::nu_start(const Scene& scene, const State& start) {
 
 /// The path starts from the prepared packing as a test does that reads it from a snapshot.
 void ElementTest::begin_path() {
-  if (place_.stage > 0) dynamics_ = Dynamics(scene_.material, dynamics_.state(), dynamics_.threads());
+  if (place_.stage > 0) dynamics_.begin_anew(dynamics_.state());
   recorder_.begin_path(dynamics_);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "grainlaw/dem/balance/minimise.hpp"
 #include "grainlaw/dem/drive/drive.hpp"
 #include "grainlaw/dem/scene/preparation.hpp"
 #include "grainlaw/dem/step/dynamics.hpp"
@@ -13,11 +14,12 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr double trial_step = 0.1;  // over t_c, while trial packings are made
+constexpr double settled = 1e-3;    // largest net force over the mean contact force
+constexpr std::uint64_t most_passes = 5000;
 // Packings of up to so many grains are tried as they are; larger ones are made of copies of one of at most
 // base_grains. In copies of few grains lists live too long, the fastest of few being slower than of many; in
 // whole packings of many not long enough, since a trial is less at rest than what it stands for.
 constexpr std::size_t whole_trial = 5000, base_grains = 4000;
-constexpr std::size_t largest_trial = 200'000;  // beyond, a grain costs the same
 
 }  // namespace
 
@@ -60,6 +62,15 @@ void TrialPacking::compress_to(double nu) {
 }
 
 void TrialPacking::shear() { go(Mode::d2, {-0.01, 0.01, 0}, 6e-6); }
+
+void TrialPacking::settle() {
+  StaticPacking packing(material_, state_);
+  MinimiseOptions options;
+  options.residual = settled;
+  options.most_passes = most_passes;
+  minimise(packing, options);
+  state_ = packing.state();
+}
 
 State TrialPacking::state() const { return times_ > 1 ? laid_out(state_, times_) : state_; }
 

@@ -9,6 +9,8 @@
 
 namespace grainlaw::dem {
 
+constexpr std::size_t largest_trial = 200'000;  ///< beyond, a grain costs the same
+
 /// A packing in an orthorhombic box beside itself, `times` along each axis.
 State laid_out(const State& one, std::size_t times);
 
@@ -20,6 +22,8 @@ class TrialPacking {
   void compress_to(double nu);
   /// Into flow, with grains that rearrange.
   void shear();
+  /// To rest, about where it is: what was done in haste has left more motion than there is in a slow flow.
+  void settle();
 
   /// Without copies beside it.
   const State& base() const { return state_; }

@@ -14,6 +14,12 @@ namespace {
 /// How many steps the list plans a flight of a grain for. Longer makes the list longer, shorter makes it more
 /// often.
 constexpr double planned_steps = 50;
+
+/// As many as have grains to move.
+int busy_threads(int wanted, std::size_t grains) {
+  const std::size_t runs = (grains + GroupedPairs::block - 1) / GroupedPairs::block;
+  return std::clamp(wanted, 1, static_cast<int>(std::clamp<std::size_t>(runs, 1, 1024)));
+}
 }  // namespace
 
 double time_step(const Material& material, double smallest_radius, double fraction) {
@@ -33,14 +39,6 @@ double step_of_contact_error(double error) {
   }
   return 2 / std::numbers::pi * std::sin(y);
 }
-
-namespace {
-/// As many as have grains to move.
-int busy_threads(int wanted, std::size_t grains) {
-  const std::size_t runs = (grains + GroupedPairs::block - 1) / GroupedPairs::block;
-  return std::clamp(wanted, 1, static_cast<int>(std::clamp<std::size_t>(runs, 1, 1024)));
-}
-}  // namespace
 
 Dynamics::Dynamics(const Material& material, const State& state, int threads)
     : material_(material),
@@ -154,6 +152,13 @@ State Dynamics::state() const {
   state.time_us = time_;
   state.step = steps_;
   return state;
+}
+
+void Dynamics::begin_anew(const State& state) {
+  team_.reset();
+  grains_ = {};
+  neighbours_ = Neighbours(material_.r_mean, 0);
+  *this = Dynamics(material_, state, threads_);
 }
 
 }  // namespace grainlaw::dem

@@ -92,6 +92,8 @@ class Dynamics {
   Glance glance() const { return dem::glance(law_, grains(), cell_, neighbours_.pairs()); }
   /// In the order of the State it began with; positions wrapped into the box.
   State state() const;
+  /// As if made of `state`; what it holds is given back before. There is no going on from it if that throws.
+  void begin_anew(const State& state);
 
  private:
   /// dv/dt of grain i, from its force and the velocity the force was computed with.

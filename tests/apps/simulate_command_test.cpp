@@ -53,6 +53,8 @@ TEST_F(Simulate, ExplainsAndMakesNothing) {
   EXPECT_THAT(outcome.out, HasSubstr("s.json: 64 grains, w = 3"));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("gamma d\\(delta\\)/dt +on, 1000 ug/us"));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("gamma_b v +off"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("motion and lists of pairs +[0-9.]+ us of a step"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("checkpoints: 0, each .* on disk"));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("compress the gas +0.3 to 0.64"));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("iso \\(1 of 1\\) +0.64 to 0.7"));
   EXPECT_THAT(outcome.out, HasSubstr("measured in 11 rows"));

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 
 #include "grainlaw/dem/observe/observers.hpp"
@@ -74,6 +75,40 @@ TEST(Cost, ModuliCountWithTheRest) {
   const SceneCost without = cost_of(scene_of(head + "}}"));
   EXPECT_EQ(without.moduli, 0u);
   EXPECT_EQ(without.moduli_seconds, 0);
+}
+
+/// Grains once more for each thread, and what lies in their inboxes.
+TEST(Cost, ThreadsHoldGrainsOfTheirOwn) {
+  const Scene scene = scene_of(R"({"preparation": {"count": 300, "nu": 0.7},
+    "path": {"segments": [{"mode": "d2", "amount": 0.001}]}, "measure": {"rows": 1}})");
+  const double one = cost_of(scene).bytes(), two = cost_of(scene, {2, 60}).bytes();
+  EXPECT_GT(two - one, 2 * 160 * 300);
+  EXPECT_LT(two - one, 2 * 400 * 300);
+}
+
+/// What a run leaves on disk, against what was said.
+TEST(Cost, OfFilesAgainstThoseOfARun) {
+  const Scene scene = scene_of(R"({"preparation": {"count": 400, "nu": 0.7, "rate": 2e-3},
+    "path": {"segments": [{"mode": "d2", "amount": 0.001}]},
+    "measure": {"rows": 1, "snapshots": [{"segment": 0, "eps_dev": 0}, {"segment": 0}]}})");
+  const SceneCost cost = cost_of(scene, {1, 1e-3});
+  EXPECT_GT(cost.snapshot_seconds, 0);
+  EXPECT_GT(cost.checkpoint_seconds, 0);
+  EXPECT_GT(cost.checkpoints(), 100);
+  SceneCost without = cost;
+  without.checkpoint_every = 0;
+  EXPECT_EQ(without.checkpoints(), 0);
+  EXPECT_NEAR(cost.seconds() - without.seconds(), cost.checkpoints() * cost.checkpoint_seconds,
+              1e-9 * cost.seconds());
+  const fs::path dir = fs::temp_directory_path() / ("grainlaw-cost-files-" + std::to_string(::getpid()));
+  std::atomic<bool> stop = false;
+  RunHooks hooks;
+  hooks.stop = &stop;
+  hooks.progress = [&](double done, const std::string&) { stop = done > 0.9; };
+  ASSERT_TRUE(run_element_test(scene, dir, hooks).stopped);
+  EXPECT_NEAR(static_cast<double>(fs::file_size(dir / "checkpoint.bin")), cost.checkpoint_bytes,
+              0.2 * cost.checkpoint_bytes);
+  fs::remove_all(dir);
 }
 
 TEST(Cost, RefusesWhatARunRefuses) {

@@ -1,0 +1,166 @@
+#include "grainlaw/dem/run/trial.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "grainlaw/dem/files/archive.hpp"
+#include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/dem/observe/observers.hpp"
+#include "grainlaw/dem/record/row_writer.hpp"
+#include "grainlaw/dem/run/measured_cost.hpp"
+#include "grainlaw/dem/step/forces.hpp"
+
+namespace grainlaw::dem {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double trial_seconds = 0.15;  // of steps, at each density
+constexpr std::uint64_t fewest_steps = 40, fewest_rows = 5, fewest_files = 3;
+
+double step_of(const Material& material, const State& state, const Stage& stage) {
+  if (!stage.leg.minimises()) return stage.stepping.dt;
+  return time_step(material, *std::min_element(state.radius.begin(), state.radius.end()),
+                   Measure{}.time_step);
+}
+
+/// exp(G dt) of a G without spin.
+Mat3 stretch_of(const Mat3& gradient, double dt) {
+  const auto grown = [dt](double rate) { return std::exp(rate * dt); };
+  if (!gradient.is_diagonal()) return apply(spectrum(gradient), grown);
+  const Vec3 rate = gradient.diagonal();
+  return Mat3::diagonal({grown(rate[0]), grown(rate[1]), grown(rate[2])});
+}
+
+/// Of the text of a table.
+double seconds_per_row(const Record& table) {
+  return seconds_of([&] { table.to_csv(); }, 0, 1) / static_cast<double>(table.rows());
+}
+
+/// A folder of its own among the temporary ones, removed with all that is in it.
+class ScratchFolder {
+ public:
+  ScratchFolder() : path_(fs::temp_directory_path() / ("grainlaw-explain-" + std::to_string(::getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+}  // namespace
+
+Trial::Trial(const Material& material, const State& state, const Stage& stage)
+    : material_(material),
+      start_(state),
+      dt_(step_of(material, state, stage)),
+      grains_(static_cast<double>(state.count())),
+      gradient_(-1 / stage.leg.duration * matrix_of(stage.leg.strain)),
+      stretch_(stretch_of(gradient_, dt_)),
+      heap_before_(heap_bytes()),
+      dynamics_(material, state) {
+  cost_.nu = state.volume_fraction();
+  dynamics_.start_flow(dt_, gradient_);
+  step();
+  cost_.engine_bytes = (heap_bytes() - heap_before_) / grains_;
+}
+
+void Trial::steps() {
+  for (std::uint64_t k = 0; k < fewest_steps / 4; ++k) step();
+  cost_.step = seconds_of([&] { step(); }, trial_seconds, fewest_steps) / grains_;
+  Grains copy = dynamics_.grains();
+  const Pairs& pairs = dynamics_.neighbours().pairs();
+  const auto force = [&](const ContactLaw& law) {
+    return seconds_of([&] { add_contact_forces(law, pairs, dynamics_.cell(), copy); }, trial_seconds / 10, 5);
+  };
+  const ContactLaw law = dynamics_.law();
+  double whole = 0, elastic = 0;
+  constexpr int turns = 3;
+  for (int turn = 0; turn < turns; ++turn) {
+    whole += force(law) / turns;
+    if (law.damped()) elastic += force(law.elastic()) / turns;
+  }
+  cost_.force = whole / grains_;
+  cost_.damping = law.damped() ? std::max(whole - elastic, 0.0) / grains_ : 0;
+  cost_.pairs = static_cast<double>(pairs.count()) / grains_;
+}
+
+/// Seconds of a call after each step and what comes before it, as in a test that writes rows: with what it
+/// needs no longer in the nearest caches.
+template <class Call, class Before>
+double Trial::seconds_between_steps(Call&& call, Before&& before) {
+  double spent = 0;
+  std::uint64_t calls = 0;
+  do {
+    step();
+    before();
+    const double begin = thread_seconds();
+    call();
+    spent += thread_seconds() - begin;
+    ++calls;
+  } while (spent < trial_seconds / 10 || calls < fewest_rows);
+  return spent / static_cast<double>(calls);
+}
+
+void Trial::rows(const std::vector<std::string>& asked) {
+  const Leg leg{};
+  RowWriter writer(material_, {leg}, cost_.nu);
+  const double append = seconds_between_steps([&] { writer.append(dynamics_, 0, 0, 0); }, [] {});
+  cost_.row = (append + seconds_per_row(writer.record())) / grains_;
+  cost_.contacts = static_cast<double>(dynamics_.measure().contacts) / grains_;
+  const SignConvention sign({leg});
+  for (const std::string& name : asked) {
+    observe::Observers one({name});
+    std::size_t row = 0;
+    Quads velocity;
+    Measurement measured;
+    const auto measure = [&] { velocity = dynamics_.velocities(), measured = dynamics_.measure(); };
+    const auto observe = [&] { one.observe(dynamics_, velocity, measured, material_, sign, 0, row++); };
+    measure();
+    observe();  // the first has nothing to compare with
+    double seconds = seconds_between_steps(observe, measure);
+    for (const auto& table : one.tables())
+      seconds += seconds_of([&] { table.rows.to_csv(); }, 0, 1) / static_cast<double>(row);
+    cost_.observers.push_back(seconds / grains_);
+  }
+}
+
+void Trial::threads(int threads) {
+  const double before = heap_bytes();
+  Dynamics shared(material_, start_, threads);
+  shared.start_flow(dt_, gradient_);
+  shared.step(stretch_ * shared.cell().edges(), gradient_);
+  cost_.threads_bytes = std::max((heap_bytes() - before) / grains_ - cost_.engine_bytes, 0.0);
+}
+
+void Trial::snapshot() {
+  const ScratchFolder folder;
+  SnapshotWriter writer(folder.path() / "trial.h5", start_.radius);
+  cost_.snapshot =
+      seconds_of([&] { writer.append(dynamics_.state(), {}); }, trial_seconds / 10, fewest_files) / grains_;
+}
+
+void Trial::checkpoint() {
+  const ScratchFolder folder;
+  const fs::path file = folder.path() / "trial.bin";
+  const auto write = [&] {
+    ArchiveWriter archive(file);
+    archive(dynamics_);
+    archive.finish();
+  };
+  cost_.checkpoint = seconds_of(write, trial_seconds / 10, fewest_files) / grains_;
+  cost_.checkpoint_bytes = static_cast<double>(fs::file_size(file)) / grains_;
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,63 @@
+// A trial of a scene's engine in one packing: what steps, rows, observers and files take on this machine now.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "grainlaw/dem/drive/stage.hpp"
+#include "grainlaw/dem/packing/state.hpp"
+#include "grainlaw/dem/run/moduli_cost.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
+#include "grainlaw/element/material.hpp"
+
+namespace grainlaw::dem {
+
+/// Per grain of the packing, in seconds and bytes.
+struct TrialCost {
+  double nu = 0;
+  double step = 0, force = 0;
+  double damping = 0;  ///< of `force`: the viscous term
+  double row = 0;
+  std::vector<double> observers;
+  double contacts = 0, pairs = 0;
+  double engine_bytes = 0;
+  double threads_bytes = 0;  ///< what several threads hold beside that
+  double snapshot = 0, checkpoint = 0, checkpoint_bytes = 0;
+  ModuliCost moduli;  ///< of all states tried, not per grain
+};
+
+class Trial {
+ public:
+  /// At the mean rate of `stage` and with its step; where that minimises, with a step of the default.
+  Trial(const Material& material, const State& state, const Stage& stage);
+
+  void steps();
+  /// Of the standard columns, and of each observer that is asked for.
+  void rows(const std::vector<std::string>& asked);
+  /// What `threads` hold.
+  void threads(int threads);
+  void snapshot();
+  void checkpoint();
+  /// Of a state of `grains` grains, by a trial on `base`.
+  void moduli(const State& base, std::size_t grains) { cost_.moduli = moduli_cost(material_, base, grains); }
+  const TrialCost& cost() const { return cost_; }
+  State state() const { return dynamics_.state(); }
+
+ private:
+  template <class Call, class Before>
+  double seconds_between_steps(Call&& call, Before&& before);
+  void step() { dynamics_.step(stretch_ * dynamics_.cell().edges(), gradient_); }
+
+  const Material& material_;
+  State start_;
+  double dt_;
+  double grains_;
+  Mat3 gradient_, stretch_;  ///< of a step
+  double heap_before_;
+  Dynamics dynamics_;
+  TrialCost cost_;
+};
+
+}  // namespace grainlaw::dem
