@@ -365,6 +365,34 @@ TEST(MemoryData, TheRateShiftsDensitiesOppositeWays) {
   expect_means(by_rate(0.82), {0.6649, 0.6648, 0.6641, 0.6640, 0.6642});
 }
 
+/// phi_J of an unloading in increments of minimised energy over that of a flow from the same packing, packing
+/// by packing: how much more, on the mean of some amplitudes, and the error of that.
+struct Shift {
+  double mean, error;
+};
+Shift minimised_over(const std::string& flow, const std::vector<double>& amplitudes) {
+  const auto still = cycles("minimised"), flowing = cycles(flow);
+  std::vector<double> differences;
+  for (const double phi_max : amplitudes) {
+    const std::vector<double> a = densities(still, phi_max, 1), b = densities(flowing, phi_max, 1);
+    EXPECT_EQ(a.size(), 3u) << phi_max;
+    EXPECT_EQ(b.size(), 3u) << phi_max;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) differences.push_back(a[i] - b[i]);
+  }
+  return {mean(differences), error_of_mean(differences)};
+}
+
+/// docs/memory-data.md has these numbers: a flow lets grains pack less the faster it is, and slow enough it
+/// comes to what balance after balance comes to.
+TEST(MemoryData, PhiJByMinimisation) {
+  const Shift fast = minimised_over("unloaded", {0.68, 0.73, 0.82});
+  EXPECT_NEAR(fast.mean, 8.1e-4, 5e-6);
+  EXPECT_NEAR(fast.error, 2.2e-4, 5e-6);
+  const Shift slow = minimised_over("unloaded-slowly", {0.68, 0.73, 0.82});
+  EXPECT_NEAR(slow.mean, 2.8e-4, 5e-6);
+  EXPECT_NEAR(slow.error, 1.5e-4, 5e-6);
+}
+
 /// The campaigns whose records stand in data/records: their branches again, at the thesis's row ISO.
 TEST(MemoryData, RecordsThatAreKeptGiveTheirTables) {
   const auto iso = model::ParameterSet::load(thesis_file()).isotropic.at("iso");
