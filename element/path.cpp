@@ -42,6 +42,15 @@ StrainTensor axis_of(Mode mode, const StrainTensor& strain, const std::optional<
   return deviator(strain);
 }
 
+/// The shear stresses that are asked for as numbers: the axis of a leg whose strain does not say one.
+StrainTensor shear_asked_for(const Control& control) {
+  StrainTensor shear{};
+  for (std::size_t c = 3; c < 6; ++c)
+    if (const auto* target = std::get_if<StressTarget>(&control.component[c]))
+      shear[c] = target->stress.value_or(0);
+  return shear;
+}
+
 StrainTensor d2_strain(double eps_dev) {
   const double e = eps_dev / std::numbers::sqrt3;
   return {-e, e, 0};
@@ -162,6 +171,8 @@ Leg Path::leg(std::size_t i, const Waypoint& from, bool certain) const {
                     ": its rate is too low");
   if (has_deviator(leg.strain))
     leg.axis = axis_of(leg.mode, leg.strain, from.axis);
+  else if (const StrainTensor shear = shear_asked_for(leg.control); has_deviator(shear))
+    leg.axis = axis_of(leg.mode, shear, from.axis);
   else if (leg.control.by_stress())
     leg.axis = from.axis;  // what its servo shears counts along the axis before it
   if (!certain && !leg.axis) leg.axis = axis_of_mode(segment);

@@ -64,7 +64,7 @@ struct Segment {
   double tolerance = 1e-6;         ///< only for relax
   double increment = 1e-4;         ///< quasistatic: largest strain component of a step, at most
   std::optional<double> residual;  ///< quasistatic, or a relax that minimises: see Leg
-  /// Whether no axis is driven at a strain rate: the box waits for rest or for stress targets.
+  /// Whether no component is driven at a strain rate: the box waits for rest or for stress targets.
   bool only_waits() const;
   /// Two quantities that the law is to follow; the mode then only says the axis of shear. Empty, or two.
   std::vector<LawControl> law_controls;
@@ -80,8 +80,10 @@ struct Segment {
 /// strain is: what the law cannot walk along.
 struct Leg {
   Mode mode;
-  StrainTensor strain;  ///< logarithmic strain of this leg, compression positive; zero for relax. Of an axis
-                        ///< under a stress target, or beside a mean one: without what the servo adds
+  StrainTensor strain;  ///< logarithmic strain of this leg, compression positive; zero for relax. Of a
+                        ///< component under a stress target, or beside a mean one: without what the servo
+                        ///< adds. Where principal axes turn, because a servo strains, too: the time integral
+                        ///< of the rate of deformation
   double eps_vol[2];    ///< from the path's start, at begin and end, of `strain`
   double eps_dev[2];    ///< sum of the signed increments from the path's start, at begin and end, of `strain`
   double duration;      ///< us; for relax and a leg that only waits for stress targets the longest
@@ -99,7 +101,7 @@ struct Leg {
   bool controlled() const { return control.by_stress() || profile == Profile::steered; }
   /// Whether time stands still, and the grains go from one balance to the next.
   bool minimises() const { return residual.has_value(); }
-  /// Whether any axis is driven at a strain rate; else it relaxes, or waits for stress targets.
+  /// Whether any component is driven at a strain rate; else it relaxes, or waits for stress targets.
   bool drives() const { return strain != StrainTensor{}; }
   /// Fraction of the leg's logarithmic strain applied at time t in [0, duration], the same for all
   /// components, so that D2 and D3 keep the volume at all times. Cosine: (1 - cos(pi t/duration))/2, which is

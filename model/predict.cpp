@@ -261,7 +261,7 @@ MeasuredPath measured_path(const Record& record, const Path& path) {
     step.duration = 1;
     const StrainTensor& axis = sign.axis(i);
     const double size = signed_deviator(axis, axis);
-    for (std::size_t c = 0; c < 3; ++c) step.strain[c] = volume / 3 + shear * axis[c] / size;
+    for (std::size_t c = 0; c < 6; ++c) step.strain[c] = (c < 3 ? volume / 3 : 0) + shear * axis[c] / size;
     measured.path.segments.push_back(step);
     measured.samples.push_back({row - 1, 1});
   }

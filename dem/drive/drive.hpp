@@ -71,7 +71,7 @@ struct LegState {
   }
 };
 
-/// Strain of the box since the leg began, per axis.
+/// Logarithmic strain of the box since the leg began, -ln V of F = V R, compression positive.
 StrainTensor leg_strain(const Dynamics& dynamics, const LegState& state);
 /// Deviatoric strain of the path where the box is now, on a controlled leg.
 double leg_eps_dev(const Dynamics& dynamics, const Leg& leg, const LegState& state);
