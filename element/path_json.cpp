@@ -23,9 +23,9 @@ constexpr double default_residual = 1e-6;  // of a packing in balance, over the 
 constexpr double least_increment = 1e-9, largest_increment = 0.01;
 constexpr double servo_over_rate = 10;  // how much faster than the segment a servo may strain an axis
 constexpr std::array all_modes{
-    Mode::iso,    Mode::uni,        Mode::d2,      Mode::d3,       Mode::components,
-    Mode::relax,  Mode::constant_p, Mode::biaxial, Mode::triaxial, Mode::isotropic_stress,
-    Mode::control};
+    Mode::iso,     Mode::uni,         Mode::d2,      Mode::d3,       Mode::components,
+    Mode::relax,   Mode::constant_p,  Mode::biaxial, Mode::triaxial, Mode::isotropic_stress,
+    Mode::control, Mode::simple_shear};
 constexpr std::array<const char*, 6> component_names{"x", "y", "z", "yz", "xz", "xy"};
 
 const std::vector<std::string>& controls_of(Mode mode) {
@@ -171,6 +171,10 @@ void read_what(Reader& reader, Segment& segment) {
       segment.shear = reader.word("shear", {"d2", "d3"}, "d2") == "d2" ? Mode::d2 : Mode::d3;
       control.mean = read_target_or_start(reader, "P");
       break;
+    case Mode::simple_shear:
+      segment.amount = reader.number("amount", any_strain);
+      if (*segment.amount == 0) reader.fail("amount", "must not be 0");
+      return;
     case Mode::biaxial:
       control.component[0] = read_target_or_start(reader, "stress");
       break;
@@ -200,7 +204,9 @@ void read_profile(Reader& reader, Segment& segment) {
       segment.mode == Mode::iso || segment.mode == Mode::uni || segment.mode == Mode::components;
   static const std::array all{Profile::constant, Profile::cosine, Profile::steered, Profile::quasistatic};
   std::vector<std::string> names;
-  for (const Profile profile : all) names.push_back(name_of(profile));
+  for (const Profile profile : all)
+    if (segment.mode != Mode::simple_shear || profile == Profile::constant || profile == Profile::cosine)
+      names.push_back(name_of(profile));
   const std::string profile = reader.word("profile", names, rests ? "cosine" : "constant");
   segment.profile =
       all[static_cast<std::size_t>(std::find(names.begin(), names.end(), profile) - names.begin())];
@@ -388,6 +394,8 @@ std::string name_of(Mode mode) {
       return "isotropic_stress";
     case Mode::control:
       return "control";
+    case Mode::simple_shear:
+      return "simple_shear";
   }
   return "";
 }

@@ -246,6 +246,28 @@ TEST(TiltedCell, ALegOfD2IsOneOfShearComponentsInATurnedFrame) {
   for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(strain[c], any.strain[c], 1e-13) << c;
 }
 
+TEST(TiltedCell, ALegOfSimpleShear) {
+  const Material m;
+  const State state = with_edges(test::squeezed(m, 100, 36, 0.75), {{1, 2, -3}, {0, 1, 1}, {0, 0, 1}});
+  const Path path = Path::read(Reader(
+      parse_json(R"({"segments": [{"mode": "simple_shear", "amount": 0.02, "duration": 3}]})", "p.json"),
+      "p.json"));
+  const Leg leg = path.leg(0, Waypoint(0.75));
+  Dynamics driven(m, state);
+  drive(driven, leg, plan_steps(leg, 0.01, 1));
+  const Sym6 strain = driven.cell().strain_from(state.box);
+  for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(strain[c], leg.strain[c], 1e-14) << c;
+  EXPECT_NEAR(driven.cell().volume() / determinant(state.box), 1, 1e-13);
+  // The flow with that velocity gradient.
+  Dynamics flowing(m, state);
+  const Mat3 gradient{{0, 0.02 / 3, 0}, {0, 0, 0}, {0, 0, 0}};
+  const StepPlan plan = plan_steps(leg, 0.01, 1);
+  flowing.start_flow(plan.dt, gradient);
+  for (std::uint64_t n = 1; n <= plan.steps; ++n)
+    flowing.step(test::deformation(gradient, static_cast<double>(n) * plan.dt) * state.box, gradient);
+  expect_near(driven.measure().stress, flowing.measure().stress, 1e-9);
+}
+
 TEST(TiltedCell, AxisPermutation) {
   // x' = y, y' = z, z' = x of a packing in a box without any right angle, in a flow without any symmetry.
   const Material m;

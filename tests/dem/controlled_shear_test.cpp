@@ -242,6 +242,33 @@ TEST(ControlledShear, GoesOnWhereItWasLeft) {
   EXPECT_TRUE(whole == end(7));
 }
 
+TEST_F(ControlledShearRun, SimpleShearAndBack) {
+  const std::string segments =
+      R"({"mode": "simple_shear", "amount": 0.4, "rate": 2e-3}, {"mode": "simple_shear", "amount": -0.4, "rate": 2e-3})";
+  const Record r =
+      run(segments, R"("rows": 4, "snapshots": [{"segment": 0, "eps_dev": 0.2}, {"segment": 0}])");
+  ASSERT_EQ(r.rows(), 9u);
+  const double step = 1e-4;  // rows are at the end of one
+  double there = 0, back = 0;
+  for (std::size_t k = 1; k <= 4; ++k) {
+    const double e = std::sqrt(3.0) * std::asinh(0.05 * static_cast<double>(k));
+    EXPECT_NEAR(r["eps_dev"][k], e, k == 4 ? 1e-12 : step);
+    EXPECT_NEAR(r["eps_dev"][4 + k], r["eps_dev"][4] - e, k == 4 ? 1e-12 : step);
+    EXPECT_NEAR(r["nu"][k] / r["nu"][0], 1, 1e-12);
+    EXPECT_EQ(r["sigma_dev"][k] > 0, r["sxy"][k] < 0);
+    there += r["sxy"][k];
+    back += r["sxy"][4 + k];
+  }
+  EXPECT_LT(there, 0);
+  EXPECT_GT(back, 0);
+  const auto frames = list_frames(dir / "a" / "snapshots.h5");
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_NEAR(frames[0].eps_dev, 0.2, step);
+  EXPECT_NEAR(frames[1].eps_dev, r["eps_dev"][4], 1e-12);
+  std::filesystem::remove_all(dir);
+  expect_goes_on_from_checkpoints(segments, R"("rows": 4, "snapshots": [{"segment": 0, "eps_dev": 0.2}])");
+}
+
 TEST_F(ControlledShearRun, CanBeExplained) {
   const Scene scene =
       scene_of(control(rest, rest, rest, R"("xy": {"strain": 0.01}, "P": "start", "rate": 1e-3)") + "," +

@@ -291,6 +291,42 @@ TEST(Path, RefusesShearControlThatMeansNothing) {
       "the same");
 }
 
+TEST(Path, SimpleShear) {
+  const auto path = path_of(R"({"segments": [{"mode": "simple_shear", "amount": 1.5, "rate": 1e-4},
+      {"mode": "simple_shear", "amount": -1.5, "duration": 100, "profile": "cosine"}]})");
+  const auto legs = path.legs(0.7);
+  EXPECT_DOUBLE_EQ(legs[0].duration, 1.5e4);
+  EXPECT_EQ(legs[0].gamma, 1.5);
+  // Squares of stretches are the eigenvalues of (1 + gamma^2, gamma; gamma, 1): exp(2 e) + exp(-2 e) = 2 +
+  // gamma^2.
+  const double e = legs[0].eps_dev[1] / std::sqrt(3.0);
+  EXPECT_NEAR(2 * std::cosh(2 * e), 2 + 1.5 * 1.5, 1e-14);
+  EXPECT_NEAR(deviator_magnitude(legs[0].strain), legs[0].eps_dev[1], 1e-15);
+  EXPECT_LT(legs[0].strain[5], 0);
+  EXPECT_LT(legs[0].strain[0], 0);  // the longest axis turns towards x
+  EXPECT_EQ(legs[0].eps_vol[1], 0);
+  EXPECT_NEAR(legs[1].eps_dev[1], 0, 1e-15);
+  for (const Leg& leg : legs)
+    for (const double f : {0.0, 0.3, 1.0}) EXPECT_NEAR(leg.fraction_at(leg.eps_dev_at(f)), f, 1e-15);
+  EXPECT_NEAR(legs[0].eps_dev_at(1), legs[0].eps_dev[1], 1e-15);
+  const SignConvention sign(legs);
+  EXPECT_DOUBLE_EQ(sign.signed_deviator({1, 1, 1, 0, 0, -0.5}, 1), 0.5 * std::sqrt(3.0));
+  EXPECT_EQ(Path::read({path.to_json(), "p.json"}).to_json(), path.to_json());
+  EXPECT_TRUE(path.spins());
+  try {
+    path.need_law_can_follow();
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("p.json: segments[0].mode: must not be simple_shear"));
+  }
+  EXPECT_EQ(refused_segment(R"({"mode": "simple_shear", "amount": 0})"),
+            "p.json: segments[0].amount: must not be 0");
+  EXPECT_THAT(refused_segment(R"({"mode": "simple_shear", "controls": {"eps_dev": 0.1}})"),
+              testing::HasSubstr("segments[0].amount"));
+  EXPECT_THAT(refused_segment(R"({"mode": "simple_shear", "amount": 0.1, "profile": "quasistatic"})"),
+              testing::HasSubstr("segments[0].profile: must be one of constant, cosine, got"));
+}
+
 TEST(SignConvention, AShearStressIsTheAxisWhereNothingIsStrained) {
   const auto waits = [](const std::string& xy) {
     return R"({"mode": "control", "x": {"stress": 0.1}, "y": {"stress": 0.1}, "z": {"stress": 0.1}, "xy": {"stress": )" +

@@ -83,6 +83,13 @@ TEST(PathControl, ShearStressesAreRefused) {
               HasSubstr("p.json: segments[0].yz" + why + "stresses on axes do not go with a shear strain"));
 }
 
+TEST(PathControl, SimpleShearIsRefused) {
+  const std::string why = "segments[0].mode: must not be simple_shear: its axes of strain turn";
+  EXPECT_THAT(refused(R"({"mode": "simple_shear", "amount": 0.1})"), HasSubstr(why));
+  EXPECT_THAT(refused(R"({"mode": "simple_shear", "amount": 0.1}, {"mode": "constant_p", "amount": 0.1})"),
+              HasSubstr(why));
+}
+
 TEST(PathControl, ThreeStressesAreAPressureAndADeviator) {
   for (const Form form : forms) {
     // 0.024 = 0.025 - 0.003/3, 0.027 = 0.025 + 0.003 2/3
