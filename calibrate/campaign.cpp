@@ -90,6 +90,9 @@ std::vector<WrittenTest> read_test(Reader& reader, const Campaign& campaign) {
   if (test.role != Role::predict && test.path.by_stress())
     reader.fail("role", "must be predict where the path is under stress control, got " + name_of(test.role) +
                             ": the laws follow strains");
+  if (test.role != Role::predict && test.path.spins())
+    reader.fail("role", "must be predict where the path has simple_shear, got " + name_of(test.role) +
+                            ": the laws have one direction of shear");
   test.measure = dem::Measure::read(reader.object_or_empty("measure"), campaign.measure);
   reader.finish();
   if (!from || !from->list) return {{test, from}};

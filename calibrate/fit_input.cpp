@@ -157,8 +157,9 @@ TestRecord read_record(const fs::path& dir, Role role) {
 std::string why_left_out(const fs::path& dir, Role role) {
   const fs::path scene = dir / "scene.json";
   Reader reader(load_json(scene), scene.string());
-  if (Path::read(reader.object("path")).by_stress())
-    return "its path is under stress control, and the law follows strains";
+  const Path path = Path::read(reader.object("path"));
+  if (path.by_stress()) return "its path is under stress control, and the law follows strains";
+  if (path.spins()) return "its path has simple_shear, and the law one direction of shear";
   const std::string why = cut_short(dir);
   if (why.empty()) return "";
   const std::size_t rows = Record::read_csv(dir / "record.csv", {"segment"}).rows();

@@ -14,14 +14,20 @@ constexpr double waited_strain = 0.5;  // at the servo's rate: from a gas to a d
 
 }  // namespace
 
-Range target_range() { return of_k_star(above_up_to(0, largest_stress)); }
+Range target_range() {
+  Range range = above_up_to(0, largest_stress);
+  range.unit = "of k* = k/(2<r>) (at 0 grains have lost their contacts)";
+  return range;
+}
 
-StressTarget read_target(Reader& reader, std::string_view key) {
+Range shear_target_range() { return of_k_star(between(-largest_stress, largest_stress)); }
+
+StressTarget read_target(Reader& reader, std::string_view key, const Range& range) {
   if (reader.raw(key).is_string()) {
     reader.word(key, {"start"});
     return {};
   }
-  return {reader.number(key, target_range())};
+  return {reader.number(key, range)};
 }
 
 StressTarget read_target_or_start(Reader& reader, std::string_view key) {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr StrainTensor axis_d2{-1, 1, 0};
 constexpr StrainTensor axis_uni{-0.5, -0.5, 1};
+constexpr StrainTensor axis_simple_shear{0, 0, 0, 0, 0, -1};  // of a small gamma > 0: that of its rate always
 
 /// a : b
 double dot(const StrainTensor& a, const StrainTensor& b) {
@@ -36,10 +37,20 @@ bool has_deviator(const StrainTensor& e) {
 StrainTensor axis_of(Mode mode, const StrainTensor& strain, const std::optional<StrainTensor>& before) {
   if (mode == Mode::d2 || mode == Mode::biaxial) return axis_d2;
   if (mode == Mode::uni || mode == Mode::d3 || mode == Mode::triaxial) return axis_uni;
+  if (mode == Mode::simple_shear) return axis_simple_shear;
   if (coaxial(strain, axis_d2)) return axis_d2;
   if (coaxial(strain, axis_uni)) return axis_uni;
   if (before && coaxial(strain, *before)) return *before;
   return deviator(strain);
+}
+
+/// The shear stresses that are asked for as numbers: the axis of a leg whose strain does not say one.
+StrainTensor shear_asked_for(const Control& control) {
+  StrainTensor shear{};
+  for (std::size_t c = 3; c < 6; ++c)
+    if (const auto* target = std::get_if<StressTarget>(&control.component[c]))
+      shear[c] = target->stress.value_or(0);
+  return shear;
 }
 
 StrainTensor d2_strain(double eps_dev) {
@@ -79,6 +90,8 @@ StrainTensor strain_of(const Segment& segment, const Waypoint& at) {
       return {0, axial, 0};
     case Mode::triaxial:
       return {0, 0, axial};
+    case Mode::simple_shear:
+      return simple_shear_strain(amount);
     case Mode::relax:
     case Mode::isotropic_stress:
       break;
@@ -120,6 +133,17 @@ double Leg::time_at(double f) const {
   return duration * 2 / std::numbers::pi * std::asin(std::sqrt(f));
 }
 
+double Leg::eps_dev_at(double f) const {
+  if (!gamma) return eps_dev[0] + f * (eps_dev[1] - eps_dev[0]);
+  return eps_dev[0] + std::numbers::sqrt3 * std::asinh(0.5 * *gamma * f);
+}
+
+double Leg::fraction_at(double value) const {
+  const double f = gamma ? 2 * std::sinh((value - eps_dev[0]) / std::numbers::sqrt3) / *gamma
+                         : (value - eps_dev[0]) / (eps_dev[1] - eps_dev[0]);
+  return std::clamp(f, 0.0, 1.0);
+}
+
 void Waypoint::move(const StrainTensor& strain, const std::optional<StrainTensor>& leg_axis) {
   if (leg_axis) axis = leg_axis;
   if (has_deviator(strain)) eps_dev += signed_deviator(strain, axis.value_or(axis_uni));
@@ -134,6 +158,7 @@ std::optional<StrainTensor> axis_of_mode(const Segment& segment) {
   const Mode mode = segment.mode == Mode::constant_p ? segment.shear : segment.mode;
   if (mode == Mode::d2 || mode == Mode::biaxial) return axis_d2;
   if (mode == Mode::uni || mode == Mode::d3 || mode == Mode::triaxial) return axis_uni;
+  if (mode == Mode::simple_shear) return axis_simple_shear;
   return std::nullopt;
 }
 
@@ -150,8 +175,9 @@ Leg Path::leg(std::size_t i, const Waypoint& from, bool certain) const {
   leg.wanted_ratio = segment.wanted_ratio;
   leg.increment = segment.increment;
   leg.residual = segment.residual;
+  if (segment.mode == Mode::simple_shear) leg.gamma = segment.amount;
   if (segment.mode == Mode::biaxial || segment.mode == Mode::triaxial) leg.to_eps_dev = segment.to_eps_dev;
-  const double size = largest(leg.strain);
+  const double size = leg.gamma ? std::abs(*leg.gamma) : largest(leg.strain);
   const bool waits = !leg.drives() && segment.by_stress();
   if (certain && segment.mode != Mode::relax && !waits && !(size > 1e-14))
     throw Error(file, segment.key, "has nothing to do: its target is the state already reached");
@@ -162,6 +188,8 @@ Leg Path::leg(std::size_t i, const Waypoint& from, bool certain) const {
                     ": its rate is too low");
   if (has_deviator(leg.strain))
     leg.axis = axis_of(leg.mode, leg.strain, from.axis);
+  else if (const StrainTensor shear = shear_asked_for(leg.control); has_deviator(shear))
+    leg.axis = axis_of(leg.mode, shear, from.axis);
   else if (leg.control.by_stress())
     leg.axis = from.axis;  // what its servo shears counts along the axis before it
   if (!certain && !leg.axis) leg.axis = axis_of_mode(segment);
@@ -220,9 +248,30 @@ void Path::need_grains_can_follow() const {
   }
 }
 
+bool Path::spins() const {
+  return std::any_of(segments.begin(), segments.end(),
+                     [](const Segment& segment) { return segment.mode == Mode::simple_shear; });
+}
+
+void Path::need_law_can_follow() const {
+  for (const Segment& segment : segments)
+    if (segment.mode == Mode::simple_shear)
+      throw Error(
+          file, segment.key + ".mode",
+          "must not be simple_shear: its axes of strain turn, and the law carries stress and fabric along "
+          "one direction of shear; without spin it is d2; grains follow simple_shear, too (simulate)");
+}
+
 bool Path::by_stress() const {
   return std::any_of(segments.begin(), segments.end(),
                      [](const Segment& segment) { return segment.control.by_stress(); });
+}
+
+StrainTensor simple_shear_strain(double gamma) {
+  // ln V = asinh(gamma/2) (cos 2a, sin 2a; sin 2a, -cos 2a) in x and y, with tan 2a = 2/gamma
+  const double size = std::asinh(0.5 * gamma), hypotenuse = std::hypot(gamma, 2);
+  const double along = size * gamma / hypotenuse;
+  return {-along, along, 0, 0, 0, -size * 2 / hypotenuse};
 }
 
 double signed_deviator(const StrainTensor& strain, const StrainTensor& axis) {

@@ -25,7 +25,8 @@ enum class Mode {
   biaxial,           ///< y driven, z at rest, x under constant stress
   triaxial,          ///< z driven, x and y under constant stress
   isotropic_stress,  ///< all three axes to the same stress
-  control            ///< any mix
+  control,           ///< any mix
+  simple_shear       ///< planes of constant y glide along x: with spin, so that the axes of strain turn
 };
 enum class Profile {
   constant,
@@ -53,7 +54,8 @@ struct Segment {
   Mode mode = Mode::iso;
   std::optional<double> to_nu, to_eps_vol, to_eps_dev;  ///< controls: at most one is set
   std::optional<double> amount;  ///< natural amount of the mode: eps_vol for iso and uni, eps_dev for d2, d3
-                                 ///< and constant_p, axial strain for biaxial and triaxial
+                                 ///< and constant_p, axial strain for biaxial and triaxial, gamma for
+                                 ///< simple_shear
   StrainTensor strain{};         ///< only for components and control
   Mode shear = Mode::d2;         ///< only for constant_p: d2 or d3
   Control control;
@@ -64,7 +66,7 @@ struct Segment {
   double tolerance = 1e-6;         ///< only for relax
   double increment = 1e-4;         ///< quasistatic: largest strain component of a step, at most
   std::optional<double> residual;  ///< quasistatic, or a relax that minimises: see Leg
-  /// Whether no axis is driven at a strain rate: the box waits for rest or for stress targets.
+  /// Whether no component is driven at a strain rate: the box waits for rest or for stress targets.
   bool only_waits() const;
   /// Two quantities that the law is to follow; the mode then only says the axis of shear. Empty, or two.
   std::vector<LawControl> law_controls;
@@ -80,11 +82,15 @@ struct Segment {
 /// strain is: what the law cannot walk along.
 struct Leg {
   Mode mode;
-  StrainTensor strain;  ///< logarithmic strain of this leg, compression positive; zero for relax. Of an axis
-                        ///< under a stress target, or beside a mean one: without what the servo adds
-  double eps_vol[2];    ///< from the path's start, at begin and end, of `strain`
-  double eps_dev[2];    ///< sum of the signed increments from the path's start, at begin and end, of `strain`
-  double duration;      ///< us; for relax and a leg that only waits for stress targets the longest
+  StrainTensor strain;  ///< logarithmic strain of this leg, compression positive; zero for relax. Of a
+                        ///< component under a stress target, or beside a mean one: without what the servo
+                        ///< adds. Where principal axes turn, because a servo strains, too: the time integral
+                        ///< of the rate of deformation
+  /// Of simple shear: F = 1 + gamma progress e_x (x) e_y; `strain` is then -ln V of the whole leg.
+  std::optional<double> gamma;
+  double eps_vol[2];  ///< from the path's start, at begin and end, of `strain`
+  double eps_dev[2];  ///< sum of the signed increments from the path's start, at begin and end, of `strain`
+  double duration;    ///< us; for relax and a leg that only waits for stress targets the longest
   Profile profile;
   double tolerance;
   Control control;
@@ -99,7 +105,7 @@ struct Leg {
   bool controlled() const { return control.by_stress() || profile == Profile::steered; }
   /// Whether time stands still, and the grains go from one balance to the next.
   bool minimises() const { return residual.has_value(); }
-  /// Whether any axis is driven at a strain rate; else it relaxes, or waits for stress targets.
+  /// Whether any component is driven at a strain rate; else it relaxes, or waits for stress targets.
   bool drives() const { return strain != StrainTensor{}; }
   /// Fraction of the leg's logarithmic strain applied at time t in [0, duration], the same for all
   /// components, so that D2 and D3 keep the volume at all times. Cosine: (1 - cos(pi t/duration))/2, which is
@@ -107,6 +113,10 @@ struct Leg {
   double progress(double t) const;
   /// Its inverse: the time at which fraction f in [0, 1] is applied, us.
   double time_at(double f) const;
+  /// eps_dev where that fraction is applied; in simple shear it is not linear in it.
+  double eps_dev_at(double f) const;
+  /// Its inverse, in [0, 1]; eps_dev[0] and eps_dev[1] must differ.
+  double fraction_at(double eps_dev) const;
 };
 
 /// Where a path stands between two segments.
@@ -145,10 +155,18 @@ struct Path {
   bool by_stress() const;
   /// Whether the strain of every segment is known before anything follows it.
   bool strain_is_known() const;
+  /// Whether any segment is simple shear, whose axes turn.
+  bool spins() const;
+  /// Throws Error (file, key) for a segment that only grains can follow.
+  void need_law_can_follow() const;
   /// Throws Error (file, key) for a segment that only the law can follow.
   void need_grains_can_follow() const;
   std::string file;  ///< for error messages
 };
+
+/// -ln V of F = V R = 1 + gamma e_x (x) e_y: principal strains -+asinh(gamma/2), whose axes lie at half the
+/// angle atan(2/gamma) to x and y.
+StrainTensor simple_shear_strain(double gamma);
 
 /// Logarithmic strain as one number: sqrt(3 J2) with the sign of its projection on the axis.
 double signed_deviator(const StrainTensor& strain, const StrainTensor& axis);

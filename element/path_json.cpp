@@ -23,10 +23,10 @@ constexpr double default_residual = 1e-6;  // of a packing in balance, over the 
 constexpr double least_increment = 1e-9, largest_increment = 0.01;
 constexpr double servo_over_rate = 10;  // how much faster than the segment a servo may strain an axis
 constexpr std::array all_modes{
-    Mode::iso,    Mode::uni,        Mode::d2,      Mode::d3,       Mode::components,
-    Mode::relax,  Mode::constant_p, Mode::biaxial, Mode::triaxial, Mode::isotropic_stress,
-    Mode::control};
-constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
+    Mode::iso,     Mode::uni,         Mode::d2,      Mode::d3,       Mode::components,
+    Mode::relax,   Mode::constant_p,  Mode::biaxial, Mode::triaxial, Mode::isotropic_stress,
+    Mode::control, Mode::simple_shear};
+constexpr std::array<const char*, 6> component_names{"x", "y", "z", "yz", "xz", "xy"};
 
 const std::vector<std::string>& controls_of(Mode mode) {
   static const std::vector<std::string> volume{"nu", "eps_vol"}, all{"nu", "eps_vol", "eps_dev"},
@@ -118,23 +118,39 @@ void read_amount(Reader& reader, Segment& segment) {
   if (segment.amount && *segment.amount == 0) reader.fail("amount", "must not be 0");
 }
 
-/// x, y, z of mode control, and P.
-void read_axes(Reader& reader, Segment& segment) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    Reader axis = reader.object(axis_names[c]);
-    if (axis.has("strain") == axis.has("stress"))
-      axis.fail("", axis.has("strain") ? "redundant: strain and stress both control this axis; give one"
-                                       : "must give strain or stress");
-    if (axis.has("strain"))
-      segment.strain[c] = axis.number("strain", any_strain);
-    else
-      segment.control.axis[c] = read_target(axis, "stress");
-    axis.finish();
+/// What component c of mode control follows.
+void read_component(Reader reader, std::size_t c, Segment& segment) {
+  if (reader.has("strain") == reader.has("stress"))
+    reader.fail("", reader.has("strain")
+                        ? "redundant: strain and stress both control this component; give one"
+                        : "must give strain or stress");
+  if (reader.has("strain"))
+    segment.strain[c] = reader.number("strain", any_strain);
+  else
+    segment.control.component[c] =
+        read_target(reader, "stress", c < 3 ? target_range() : shear_target_range());
+  reader.finish();
+}
+
+/// Shear components by the order that is not theirs: nearest_word would take "yx" for "x".
+void refuse_other_order(const Reader& reader) {
+  for (std::size_t c = 3; c < 6; ++c) {
+    const std::string name = component_names[c], other(name.rbegin(), name.rend());
+    if (reader.has(other)) reader.fail(other, "unknown key, did you mean " + name + "?");
   }
-  const bool any = segment.control.by_stress();
+}
+
+/// x, y, z of mode control, the shear components where they are given, and P.
+void read_components(Reader& reader, Segment& segment) {
+  for (std::size_t c = 0; c < 6; ++c) {
+    const char* const name = component_names[c];
+    if (c >= 3) reader.optional({name});
+    if (c < 3 || reader.has(name)) read_component(reader.object(name), c, segment);
+  }
+  refuse_other_order(reader);
   reader.optional({"P"});
   if (!reader.has("P")) return;
-  if (any)
+  if (segment.control.axis_by_stress())
     reader.fail("P", "needs a strain on each of x, y, z: the isotropic strain that keeps P adds to it");
   segment.control.mean = read_target(reader, "P");
 }
@@ -146,19 +162,24 @@ void read_what(Reader& reader, Segment& segment) {
     case Mode::components:
       return read_strain(reader, segment);
     case Mode::control:
-      return read_axes(reader, segment);
+      return read_components(reader, segment);
     case Mode::isotropic_stress:
-      control.axis.fill(StressTarget{reader.number("P", target_range())});
+      control.component[0] = control.component[1] = control.component[2] =
+          StressTarget{reader.number("P", target_range())};
       return;
     case Mode::constant_p:
       segment.shear = reader.word("shear", {"d2", "d3"}, "d2") == "d2" ? Mode::d2 : Mode::d3;
       control.mean = read_target_or_start(reader, "P");
       break;
+    case Mode::simple_shear:
+      segment.amount = reader.number("amount", any_strain);
+      if (*segment.amount == 0) reader.fail("amount", "must not be 0");
+      return;
     case Mode::biaxial:
-      control.axis[0] = read_target_or_start(reader, "stress");
+      control.component[0] = read_target_or_start(reader, "stress");
       break;
     case Mode::triaxial:
-      control.axis[0] = control.axis[1] = read_target_or_start(reader, "stress");
+      control.component[0] = control.component[1] = read_target_or_start(reader, "stress");
       break;
     default:
       break;
@@ -170,7 +191,7 @@ void read_quasistatic(Reader& reader, Segment& segment) {
   if (segment.control.by_stress())
     reader.fail("profile", "must not be quasistatic under stress control: a servo needs time");
   if (segment.mode == Mode::control)
-    reader.fail("profile", "must not be quasistatic in control; with three strains, components is the same");
+    reader.fail("profile", "must not be quasistatic in control; with strains alone, components is the same");
   for (const char* key : {"rate", "duration"})
     if (reader.has(key)) reader.fail(key, "means nothing in a quasistatic segment: no time passes");
   segment.increment =
@@ -183,7 +204,9 @@ void read_profile(Reader& reader, Segment& segment) {
       segment.mode == Mode::iso || segment.mode == Mode::uni || segment.mode == Mode::components;
   static const std::array all{Profile::constant, Profile::cosine, Profile::steered, Profile::quasistatic};
   std::vector<std::string> names;
-  for (const Profile profile : all) names.push_back(name_of(profile));
+  for (const Profile profile : all)
+    if (segment.mode != Mode::simple_shear || profile == Profile::constant || profile == Profile::cosine)
+      names.push_back(name_of(profile));
   const std::string profile = reader.word("profile", names, rests ? "cosine" : "constant");
   segment.profile =
       all[static_cast<std::size_t>(std::find(names.begin(), names.end(), profile) - names.begin())];
@@ -191,9 +214,6 @@ void read_profile(Reader& reader, Segment& segment) {
   if (segment.profile == Profile::steered) {
     segment.wanted_ratio = reader.number("Ek_over_Ep", inside(0, 1), segment.wanted_ratio);
     if (segment.duration) reader.fail("duration", "means nothing with a steered rate; give rate");
-    if (std::any_of(segment.strain.begin() + 3, segment.strain.end(), [](double e) { return e != 0; }))
-      reader.fail("profile",
-                  "must not be steered where strain has shear components: only edges can be steered");
   }
   const bool axial = segment.mode == Mode::biaxial || segment.mode == Mode::triaxial;
   if (!axial || !segment.to_eps_dev) return;
@@ -222,9 +242,9 @@ void read_pace(Reader& reader, Segment& segment) {
 void check_drive(const Reader& reader, const Segment& segment) {
   if (segment.mode != Mode::control || !segment.only_waits()) return;
   if (!segment.control.by_stress())
-    reader.fail("", "has nothing to do: x, y and z have neither a strain nor a stress");
+    reader.fail("", "has nothing to do: no component has a strain or a stress");
   for (const char* key : {"duration", "profile"})
-    if (reader.has(key)) reader.fail(key, "means nothing here: no axis is strained");
+    if (reader.has(key)) reader.fail(key, "means nothing here: no component is strained");
 }
 
 Segment read_segment(Reader& reader, std::int64_t& repeat) {
@@ -299,14 +319,20 @@ Json start_json(const Start& start) {
   return json;
 }
 
+void put_components(Json& json, const Segment& segment) {
+  for (std::size_t c = 0; c < 6; ++c) {
+    if (const auto* target = std::get_if<StressTarget>(&segment.control.component[c]))
+      json[component_names[c]] = {{"stress", grainlaw::to_json(*target)}};
+    else if (c < 3 || segment.strain[c] != 0)
+      json[component_names[c]] = {{"strain", segment.strain[c]}};
+  }
+}
+
 void put_targets(Json& json, const Segment& segment) {
-  const auto& axis = segment.control.axis;
-  const auto target = [&](std::size_t c) { return grainlaw::to_json(std::get<StressTarget>(axis[c])); };
+  const auto& component = segment.control.component;
+  const auto target = [&](std::size_t c) { return grainlaw::to_json(std::get<StressTarget>(component[c])); };
   if (segment.mode == Mode::constant_p) json["shear"] = name_of(segment.shear);
-  if (segment.mode == Mode::control)
-    for (std::size_t c = 0; c < 3; ++c)
-      json[axis_names[c]] =
-          segment.control.by_stress(c) ? Json{{"stress", target(c)}} : Json{{"strain", segment.strain[c]}};
+  if (segment.mode == Mode::control) put_components(json, segment);
   if (segment.mode == Mode::biaxial || segment.mode == Mode::triaxial) json["stress"] = target(0);
   if (segment.mode == Mode::isotropic_stress) json["P"] = target(0);
   if (segment.control.mean) json["P"] = grainlaw::to_json(*segment.control.mean);
@@ -368,6 +394,8 @@ std::string name_of(Mode mode) {
       return "isotropic_stress";
     case Mode::control:
       return "control";
+    case Mode::simple_shear:
+      return "simple_shear";
   }
   return "";
 }

@@ -192,6 +192,7 @@ Prediction predict_controlled(const ParameterSet& parameters, const Path& path,
 }  // namespace
 
 Prediction predict(const ParameterSet& parameters, const Path& path, const PredictOptions& options) {
+  path.need_law_can_follow();
   if (!path.strain_is_known()) return predict_controlled(parameters, path, options);
   return predict(parameters, path, even_samples_of(parameters, path, options), options);
 }
@@ -238,6 +239,7 @@ std::vector<Sample> samples_of(const Record& record, const Path& path, double nu
 }
 
 MeasuredPath measured_path(const Record& record, const Path& path) {
+  path.need_law_can_follow();
   const auto &segment = record["segment"], &eps_vol = record["eps_vol"], &eps_dev = record["eps_dev"];
   const double nu = record["nu"].front() * std::exp(-eps_vol.front());
   const std::vector<Leg> asked = path.nominal_legs(nu);
@@ -261,7 +263,7 @@ MeasuredPath measured_path(const Record& record, const Path& path) {
     step.duration = 1;
     const StrainTensor& axis = sign.axis(i);
     const double size = signed_deviator(axis, axis);
-    for (std::size_t c = 0; c < 3; ++c) step.strain[c] = volume / 3 + shear * axis[c] / size;
+    for (std::size_t c = 0; c < 6; ++c) step.strain[c] = (c < 3 ? volume / 3 : 0) + shear * axis[c] / size;
     measured.path.segments.push_back(step);
     measured.samples.push_back({row - 1, 1});
   }

@@ -29,6 +29,7 @@ void check_legs(const Path& path, const std::vector<Leg>& legs) {
 }  // namespace
 
 std::vector<Leg> legs_of(const Path& path, double nu) {
+  path.need_law_can_follow();
   std::vector<Leg> legs = path.legs(nu);
   check_legs(path, legs);
   return legs;

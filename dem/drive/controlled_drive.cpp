@@ -37,18 +37,16 @@ class ControlledLeg {
 
   void begin() {
     state_.start_edges = dynamics_.cell().edges();
-    control_.servo = servo_.start(dynamics_.glance());
+    control_.servo = servo_.start(seen());
     look(0);
-    dynamics_.start(dt_, box_rate(0));
+    dynamics_.start_flow(dt_, box_rate(0));
   }
 
   void step() {
     const double own_step = dt_ * control_.speed * control_.servo.throttle;
-    const Vec3 rate = box_rate(own_step);
-    const Mat3 stretch =
-        Mat3::diagonal({std::exp(rate[0] * dt_), std::exp(rate[1] * dt_), std::exp(rate[2] * dt_)});
+    const Mat3 rate = box_rate(own_step);
     control_.own_time += own_step;
-    dynamics_.step(stretch * dynamics_.cell().edges(), Mat3::diagonal(rate));
+    dynamics_.step(stretch(rate) * dynamics_.cell().edges(), rate);
     ++state_.step;
     control_.looked = state_.step % look_interval == 0;
     if (control_.looked) look(dt_ * static_cast<double>(look_interval));
@@ -68,10 +66,14 @@ class ControlledLeg {
   }
 
  private:
+  Glance seen() const {
+    return dynamics_.glance(leg_.control.shear_by_stress() ? Stresses::all : Stresses::normal);
+  }
+
   void look(double elapsed) {
-    const Glance seen = dynamics_.glance();
-    if (leg_.profile == Profile::steered) steer(seen, elapsed);
-    servo_.look(control_.servo, seen, elapsed, driven());
+    const Glance now = seen();
+    if (leg_.profile == Profile::steered) steer(now, elapsed);
+    servo_.look(control_.servo, now, elapsed, driven());
     control_.on_target = servo_.within_tolerance(control_.servo);
     control_.progress = progress();
   }
@@ -86,7 +88,7 @@ class ControlledLeg {
     control_.speed = std::clamp(control_.speed, slowest_steered, fastest_steered);
   }
 
-  /// Largest strain rate of a driven axis, without throttle.
+  /// Largest strain rate of a driven component, without throttle.
   double driven() const {
     if (!leg_.drives()) return 0;
     const double own_step = dt_ * control_.speed;
@@ -95,13 +97,21 @@ class ControlledLeg {
     return largest * (leg_.progress(control_.own_time + own_step) - leg_.progress(control_.own_time)) / dt_;
   }
 
-  /// d(ln L)/dt over a step by which the leg's own time goes on by `own_step`.
-  Vec3 box_rate(double own_step) const {
+  /// G = dH/dt H^-1, symmetric, over a step by which the leg's own time goes on by `own_step`. Diagonal to
+  /// the last bit where no shear is asked for.
+  Mat3 box_rate(double own_step) const {
     const double share =
         (leg_.progress(control_.own_time + own_step) - leg_.progress(control_.own_time)) / dt_;
-    Vec3 rate = servo_.rates(control_.servo);
-    for (std::size_t c = 0; c < 3; ++c) rate[c] = -(rate[c] + leg_.strain[c] * share);
-    return rate;
+    Sym6 rate = servo_.rates(control_.servo);
+    for (std::size_t c = 0; c < rate.size(); ++c) rate[c] = -(rate[c] + leg_.strain[c] * share);
+    return matrix_of(rate);
+  }
+
+  /// exp(G dt): how the edges go on in a step.
+  Mat3 stretch(const Mat3& rate) const {
+    const auto grown = [this](double x) { return std::exp(x * dt_); };
+    if (!rate.is_diagonal()) return apply(spectrum(rate), grown);
+    return Mat3::diagonal({grown(rate(0, 0)), grown(rate(1, 1)), grown(rate(2, 2))});
   }
 
   double progress() const {
@@ -130,8 +140,7 @@ std::string short_text(double x) {
 }  // namespace
 
 StrainTensor leg_strain(const Dynamics& dynamics, const LegState& state) {
-  const Sym6 strain = dynamics.cell().strain_from(state.start_edges);
-  return {strain[0], strain[1], strain[2]};
+  return dynamics.cell().strain_from(state.start_edges);
 }
 
 double leg_eps_dev(const Dynamics& dynamics, const Leg& leg, const LegState& state) {
@@ -152,17 +161,20 @@ void follow_controlled(Dynamics& dynamics, const Leg& leg, const StepPlan& plan,
 std::string why_lost(const Material& material, const Leg& leg, const LegState& state) {
   const Servo servo(material, leg.control);
   const ServoState& at = state.control.servo;
-  if (servo.targets().empty()) return "its strain cannot be reached in this box";
+  const bool in_this_box = !(at.off > leg.control.servo.wait);
   if (leg.to_eps_dev && state.control.own_time >= leg.duration)
     return "eps_dev never comes to " + to_text(*leg.to_eps_dev);
+  if (servo.possible(at) && servo.within_tolerance(at)) return "its strain cannot be reached in this box";
   const std::size_t worst = servo.worst(at);
   const auto target = servo.targets()[worst];
   const double unit = material.stress_unit();
-  const std::string name = target ? std::array{"sxx", "syy", "szz"}[*target] : "P";
+  const std::string name = target ? std::array{"sxx", "syy", "szz", "syz", "sxz", "sxy"}[*target] : "P";
   if (!servo.possible(at)) return name + " is 0 where the segment starts, and cannot be kept; give a number";
+  const bool of_P = Servo::is_shear(target) && at.P > std::abs(at.target[worst]);
   return name + " cannot be kept at " + short_text(at.target[worst] / unit) + " to " +
-         short_text(leg.control.servo.tolerance) + ": it is " + short_text(at.reached[worst] / unit) +
-         " after " + short_text(at.off) + " us out of tolerance";
+         short_text(leg.control.servo.tolerance) + (of_P ? " of P = " + short_text(at.P / unit) : "") +
+         ": it is " + short_text(at.reached[worst] / unit) + " after " + short_text(at.off) +
+         " us out of tolerance" + (in_this_box ? ", and the box cannot be strained further" : "");
 }
 
 }  // namespace grainlaw::dem

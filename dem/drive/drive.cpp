@@ -10,15 +10,19 @@ namespace grainlaw::dem {
 
 namespace {
 constexpr std::uint64_t relax_check_interval = 100;  // steps between two looks at the energies
-}
+
+/// gamma e_x (x) e_y
+Mat3 glide(double gamma) { return {{0, gamma, 0}, {0, 0, 0}, {0, 0, 0}}; }
+}  // namespace
 
 Drive::Drive(const Mat3& start_edges, const Leg& leg)
     : start_(start_edges), strain_(matrix_of(leg.strain)), principal_{}, leg_(leg) {
-  if (!strain_.is_diagonal()) principal_ = spectrum(strain_);
+  if (!leg.gamma && !strain_.is_diagonal()) principal_ = spectrum(strain_);
 }
 
 Mat3 Drive::edges(double t) const {
   const double p = leg_.progress(t);
+  if (leg_.gamma) return (Mat3::identity() + glide(p * *leg_.gamma)) * start_;
   const auto stretch = [p](double strain) { return std::exp(-strain * p); };
   if (!strain_.is_diagonal()) return apply(principal_, stretch) * start_;
   return Mat3::diagonal({stretch(strain_(0, 0)), stretch(strain_(1, 1)), stretch(strain_(2, 2))}) * start_;
@@ -27,7 +31,7 @@ Mat3 Drive::edges(double t) const {
 Mat3 Drive::gradient(double t, double dt) const {
   const double from = std::max(t - 0.5 * dt, 0.0), to = std::min(t + 0.5 * dt, leg_.duration);
   const double speed = (leg_.progress(to) - leg_.progress(from)) / (to - from);
-  return -speed * strain_;
+  return leg_.gamma ? glide(speed * *leg_.gamma) : -speed * strain_;
 }
 
 StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_steps) {

@@ -12,7 +12,7 @@
 namespace grainlaw::dem {
 
 /// The motion of the box along a leg: edges H(t) = exp(-strain progress(t)) H(0), a stretch without spin
-/// whose principal axes stay where they are.
+/// whose principal axes stay where they are; or, in simple shear, (1 + gamma progress(t) e_x (x) e_y) H(0).
 class Drive {
  public:
   Drive(const Mat3& start_edges, const Leg& leg);
@@ -71,7 +71,7 @@ struct LegState {
   }
 };
 
-/// Strain of the box since the leg began, per axis.
+/// Logarithmic strain of the box since the leg began, -ln V of F = V R, compression positive.
 StrainTensor leg_strain(const Dynamics& dynamics, const LegState& state);
 /// Deviatoric strain of the path where the box is now, on a controlled leg.
 double leg_eps_dev(const Dynamics& dynamics, const Leg& leg, const LegState& state);

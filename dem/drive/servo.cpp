@@ -13,11 +13,21 @@ namespace {
 constexpr double response_over_contact = 5;
 /// Least stiffness that the gain is made for, over k*: grains that hardly touch have none.
 constexpr double least_stiffness = 0.05;
-/// Of central springs that move affinely: longitudinal over bulk modulus.
-constexpr double longitudinal = 9.0 / 5.0;
+/// Stiffness over the bulk modulus K = (1/9V) sum k l^2, of central springs that move affinely and point
+/// everywhere alike: C_ijkl = (1/V) sum k l^2 <n_i n_j n_k n_l> = 9K <n_i n_j n_k n_l>, with <n_x^4> = 1/5
+/// and <n_x^2 n_y^2> = 1/15. The mean stress answers to the same strain of all axes with 3K, a normal stress
+/// to that of its axis with C_xxxx, a shear stress to a component eps_xy of the tensor with 2 C_xyxy = 2G.
+constexpr double isotropic = 3, longitudinal = 9.0 / 5.0, shear = 6.0 / 5.0;
+
+double stiffness_over_bulk(const Servo::Target& target) {
+  if (!target) return isotropic;
+  return Servo::is_shear(target) ? shear : longitudinal;
+}
+
+double mean_stress(const Glance& seen) { return trace(seen.stress) / 3; }
 
 double stress_of(const Servo::Target& target, const Glance& seen) {
-  return target ? seen.stress[*target] : (seen.stress[0] + seen.stress[1] + seen.stress[2]) / 3;
+  return target ? seen.stress[*target] : mean_stress(seen);
 }
 
 }  // namespace
@@ -27,15 +37,16 @@ Servo::Servo(const Material& material, const Control& control)
       stress_unit_(material.stress_unit()),
       response_(response_over_contact * material.contact_duration(material.r_mean)) {
   if (control.mean) targets_.emplace_back(std::nullopt);
-  for (std::size_t c = 0; c < 3; ++c)
+  for (std::size_t c = 0; c < control.component.size(); ++c)
     if (control.by_stress(c)) targets_.emplace_back(c);
 }
 
 ServoState Servo::start(const Glance& seen) const {
   ServoState state;
+  state.P = mean_stress(seen);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     const StressTarget& wanted =
-        targets_[i] ? std::get<StressTarget>(control_.axis[*targets_[i]]) : *control_.mean;
+        targets_[i] ? std::get<StressTarget>(control_.component[*targets_[i]]) : *control_.mean;
     state.reached[i] = stress_of(targets_[i], seen);
     state.target[i] = wanted.stress ? *wanted.stress * stress_unit_ : state.reached[i];
   }
@@ -43,8 +54,14 @@ ServoState Servo::start(const Glance& seen) const {
 }
 
 double Servo::error(const ServoState& state, std::size_t target) const {
-  if (!(state.target[target] > 0)) return -std::numeric_limits<double>::infinity();
-  return state.reached[target] / state.target[target] - 1;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double wanted = state.target[target], reached = state.reached[target];
+  if (is_shear(targets_[target])) {
+    const double missed = reached - wanted, scale = std::max(state.P, std::abs(wanted));
+    if (scale > 0) return missed / scale;
+    return missed == 0 ? 0 : std::copysign(infinity, missed);
+  }
+  return wanted > 0 ? reached / wanted - 1 : -infinity;
 }
 
 std::size_t Servo::worst(const ServoState& state) const {
@@ -55,7 +72,9 @@ std::size_t Servo::worst(const ServoState& state) const {
 }
 
 bool Servo::possible(const ServoState& state) const {
-  return targets_.empty() || std::isfinite(error(state, worst(state)));
+  for (std::size_t i = 0; i < targets_.size(); ++i)
+    if (!is_shear(targets_[i]) && !(state.target[i] > 0)) return false;
+  return true;
 }
 
 bool Servo::within_tolerance(const ServoState& state) const {
@@ -65,6 +84,7 @@ bool Servo::within_tolerance(const ServoState& state) const {
 void Servo::look(ServoState& state, const Glance& seen, double elapsed, double driven) const {
   if (targets_.empty()) return;
   const double granted = driven * state.throttle;
+  state.P = mean_stress(seen);
   for (std::size_t i = 0; i < targets_.size(); ++i) state.reached[i] = stress_of(targets_[i], seen);
   const double off = std::abs(error(state, worst(state))) / control_.servo.tolerance;
   state.throttle = std::clamp(2 - 2 * off, 0.0, 1.0);
@@ -72,7 +92,7 @@ void Servo::look(ServoState& state, const Glance& seen, double elapsed, double d
   state.on = off > 1 ? 0 : state.on + elapsed;
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     const double stiffness =
-        std::max((targets_[i] ? longitudinal : 3.0) * seen.bulk, least_stiffness * stress_unit_);
+        std::max(stiffness_over_bulk(targets_[i]) * seen.bulk, least_stiffness * stress_unit_);
     const double missing = (state.target[i] - state.reached[i]) / stiffness;  // as a strain
     const double wanted = missing / response_ + state.follow[i] * driven * state.throttle;
     state.rate[i] = std::clamp(wanted, -control_.servo.rate, control_.servo.rate);
@@ -82,11 +102,14 @@ void Servo::look(ServoState& state, const Glance& seen, double elapsed, double d
   }
 }
 
-Vec3 Servo::rates(const ServoState& state) const {
-  Vec3 rates{};
-  for (std::size_t i = 0; i < targets_.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      if (!targets_[i] || *targets_[i] == c) rates[c] += state.rate[i];
+Sym6 Servo::rates(const ServoState& state) const {
+  Sym6 rates{};
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (targets_[i])
+      rates[*targets_[i]] += state.rate[i];
+    else
+      for (std::size_t c = 0; c < 3; ++c) rates[c] += state.rate[i];
+  }
   return rates;
 }
 

@@ -22,7 +22,7 @@ double wanted_progress(const StateRequest& wanted, const Leg& leg, double nu_sta
     return std::clamp((x - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0);
   };
   if (wanted.nu) return share(std::log(*wanted.nu / nu_start), leg.eps_vol);
-  if (wanted.eps_dev) return share(*wanted.eps_dev, leg.eps_dev);
+  if (wanted.eps_dev) return leg.fraction_at(*wanted.eps_dev);
   return 1;
 }
 

@@ -15,7 +15,7 @@ namespace {
 double eps_dev(const Dynamics& dynamics, const Stage& stage, const LegState& state) {
   const Leg& leg = stage.leg;
   if (leg.controlled()) return leg_eps_dev(dynamics, leg, state);
-  return leg.eps_dev[0] + stage.progress(state.step) * (leg.eps_dev[1] - leg.eps_dev[0]);
+  return leg.eps_dev_at(stage.progress(state.step));
 }
 
 }  // namespace

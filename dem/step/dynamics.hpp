@@ -89,7 +89,9 @@ class Dynamics {
   Energies energies() const;
   /// Both in one pass, with the stiffness of the network: what servo and steering read. Velocities as in
   /// static_stress().
-  Glance glance() const { return dem::glance(law_, grains(), cell_, neighbours_.pairs()); }
+  Glance glance(Stresses which = Stresses::all) const {
+    return dem::glance(law_, grains(), cell_, neighbours_.pairs(), which);
+  }
   /// In the order of the State it began with; positions wrapped into the box.
   State state() const;
   /// As if made of `state`; what it holds is given back before. There is no going on from it if that throws.

@@ -13,7 +13,7 @@ namespace {
 
 /// A mix of strains and stresses, whose axis its strains alone do not show.
 bool is_mix(const Leg& leg) {
-  return leg.mode == Mode::control && leg.control.by_stress() && !leg.control.mean;
+  return leg.mode == Mode::control && (leg.control.axis_by_stress() || leg.control.shear_by_stress());
 }
 
 /// The axis that stress and fabric have along the whole path, if any segment says it. Throws Error where two

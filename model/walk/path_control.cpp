@@ -8,7 +8,7 @@ namespace grainlaw::model {
 
 namespace {
 
-constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
+constexpr std::array<const char*, 6> component_names{"x", "y", "z", "yz", "xz", "xy"};
 constexpr double same = 1e-9;  // relative: stresses or strains given as the same number
 
 bool close(double x, double y) { return std::abs(x - y) <= same * (std::abs(x) + std::abs(y)); }
@@ -33,7 +33,7 @@ Prescribed quantity_of(Quantity quantity) {
 }
 
 const std::optional<double>& target_of(const Control& control, std::size_t c) {
-  return std::get<StressTarget>(control.axis[c]).stress;
+  return std::get<StressTarget>(control.component[c]).stress;
 }
 
 }  // namespace
@@ -49,7 +49,8 @@ Prescribed PathControl::Aim::from(const State& state, const State& begin) const 
 PathControl::PathControl(const Path& path, std::size_t i, const StrainTensor& axis)
     : path_(path), segment_(path.segments.at(i)) {
   const double size = signed_deviator(axis, axis);
-  for (std::size_t c = 0; c < 3; ++c) m_[c] = axis[c] / size;
+  for (std::size_t c = 0; c < 6; ++c) m_[c] = axis[c] / size;
+  refuse_shear();
   const bool sheared_axes = axis[3] != 0 || axis[4] != 0 || axis[5] != 0;
   if (sheared_axes && segment_.control.by_stress() && !segment_.control.mean)
     cannot("the axes of the path are not x, y and z");
@@ -72,8 +73,8 @@ void PathControl::find_aims() {
   }
 }
 
-void PathControl::cannot(const std::string& why) const {
-  throw Error(path_.file, segment_.key,
+void PathControl::cannot(const std::string& why, const std::string& field) const {
+  throw Error(path_.file, segment_.key + (field.empty() ? "" : "." + field),
               "cannot be followed by the law, which has one direction of shear: " + why);
 }
 
@@ -120,6 +121,16 @@ void PathControl::isotropic_stress() {
            Aim{Prescribed::stress("sigma_dev", 0, 1), 0.0, std::nullopt}};
 }
 
+/// A shear strain beside P alone is along the axis of the path, or has been refused before.
+void PathControl::refuse_shear() const {
+  const Control& control = segment_.control;
+  for (std::size_t c = 3; c < 6; ++c) {
+    if (control.by_stress(c)) cannot("it has no shear stress as a target", component_names[c]);
+    if (control.axis_by_stress() && segment_.strain[c] != 0)
+      cannot("stresses on axes do not go with a shear strain", component_names[c]);
+  }
+}
+
 void PathControl::axes() {
   std::size_t stresses = 0, loaded = 0, strained = 0;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -146,6 +157,7 @@ void PathControl::mean_and_strains() {
   const StrainTensor& strain = segment_.strain;
   double shear = 0;
   for (std::size_t c = 0; c < 3; ++c) shear += a(c) * strain[c];
+  for (std::size_t c = 3; c < 6; ++c) shear += 2 * a(c) * strain[c];
   aims_ = {Aim{Prescribed::stress("P", 1, 0), segment_.control.mean->stress, std::nullopt},
            Aim{Prescribed::strain("eps_dev", 0, 1), std::nullopt, shear}};
   approaches_ = true;
@@ -163,15 +175,16 @@ void PathControl::three_stresses() {
 void PathControl::two_stresses(std::size_t strained) {
   const std::size_t i = (strained + 1) % 3, j = (strained + 2) % 3;
   const auto &at_i = target_of(segment_.control, i), &at_j = target_of(segment_.control, j);
-  const std::string sides = std::string(axis_names[i]) + " and " + axis_names[j];
+  const std::string sides = std::string(component_names[i]) + " and " + component_names[j];
   if (!close(m(i), m(j)))
-    cannot("stresses on " + sides + " and a strain of " + axis_names[strained] +
+    cannot("stresses on " + sides + " and a strain of " + component_names[strained] +
            " are no two quantities along the axis of the path");
   if (at_i.has_value() != at_j.has_value() || (at_i && !close(*at_i, *at_j)))
     cannot("the stresses on " + sides + " must be the same");
-  aims_ = {stress_on(i, sides),
-           Aim{Prescribed::strain(std::string("the strain of ") + axis_names[strained], 1.0 / 3, m(strained)),
-               std::nullopt, segment_.strain[strained]}};
+  aims_ = {
+      stress_on(i, sides),
+      Aim{Prescribed::strain(std::string("the strain of ") + component_names[strained], 1.0 / 3, m(strained)),
+          std::nullopt, segment_.strain[strained]}};
   approaches_ = true;
 }
 
@@ -183,13 +196,14 @@ void PathControl::one_stress(std::size_t loaded) {
   const bool coaxial = close(m(i), m(j)) && close(e_i, e_j);
   const bool plane = (m(i) == 0 && e_i == 0) || (m(j) == 0 && e_j == 0);
   if (!coaxial && !plane)
-    cannot(std::string("a stress on ") + axis_names[loaded] + " and these strains of " + axis_names[i] +
-           " and " + axis_names[j] + " are not along the axis of the path");
+    cannot(std::string("a stress on ") + component_names[loaded] + " and these strains of " +
+           component_names[i] + " and " + component_names[j] + " are not along the axis of the path");
   if (plane)
     remark_ = "plane strain is not along the axis of D2: the law takes its volume and its projection";
-  aims_ = {stress_on(loaded, axis_names[loaded]),
-           Aim{Prescribed::strain(std::string("the strain of ") + axis_names[i] + " and " + axis_names[j],
-                                  -a(loaded), 1),
+  aims_ = {stress_on(loaded, component_names[loaded]),
+           Aim{Prescribed::strain(
+                   std::string("the strain of ") + component_names[i] + " and " + component_names[j],
+                   -a(loaded), 1),
                std::nullopt, (a(i) - a(loaded)) * e_i + (a(j) - a(loaded)) * e_j}};
   approaches_ = true;
 }

@@ -49,16 +49,18 @@ class PathControl {
   void constant_p();
   void sides();
   void isotropic_stress();
+  void refuse_shear() const;
   void axes();
   void mean_and_strains();
   void three_stresses();
   void two_stresses(std::size_t strained);
   void one_stress(std::size_t loaded);
-  [[noreturn]] void cannot(const std::string& why) const;
+  /// `field` of the segment, if one alone is why.
+  [[noreturn]] void cannot(const std::string& why, const std::string& field = "") const;
 
   const Path& path_;
   const Segment& segment_;
-  std::array<double, 3> m_{};
+  StrainTensor m_{};
   std::array<Aim, 2> aims_;
   bool approaches_ = false;                ///< goes to its stresses first
   std::optional<StrainTensor> start_mix_;  ///< which of three stresses are targets

@@ -236,6 +236,11 @@ TEST(Campaign, RefusesToGuessWhatAServoDoes) {
   fitted.replace(fitted.find("predict"), 7, "fit");
   EXPECT_THAT(refusal(with_tests(iso + "," + fitted)),
               HasSubstr("tests[1].role: must be predict where the path is under stress control, got fit"));
+  EXPECT_THAT(
+      refusal(with_tests(
+          iso +
+          R"(,{"name": "s", "role": "fit", "path": {"segments": [{"mode": "simple_shear", "amount": 0.1}]}})")),
+      HasSubstr("tests[1].role: must be predict where the path has simple_shear, got fit"));
 }
 
 TEST(Campaign, RefusesSnapshotsOffThePath) {

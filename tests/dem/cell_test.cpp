@@ -149,18 +149,6 @@ State with_edges(State state, const Mat3& basis) {
   return state;
 }
 
-State turned(State state, const Mat3& turn) {
-  state.box = turn * state.box;
-  for (auto& x : state.position) x = turn * x;
-  for (auto& v : state.velocity) v = turn * v;
-  return state;
-}
-
-Sym6 turned(const Sym6& q, const Mat3& turn) {
-  const Mat3 a = turn * Mat3({q[0], q[5], q[4]}, {q[5], q[1], q[3]}, {q[4], q[3], q[2]}) * transposed(turn);
-  return {a(0, 0), a(1, 1), a(2, 2), a(1, 2), a(0, 2), a(0, 1)};
-}
-
 void expect_near(const Sym6& is, const Sym6& should, double tolerance) {
   for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(is[c], should[c], tolerance * std::abs(should[0])) << c;
 }
@@ -207,10 +195,10 @@ TEST(TiltedCell, ATurnedPackingHasTheTurnedStress) {
   const State state = test::squeezed(m, 100, 32, 0.75);
   const Mat3 turn = test::rotation({0, 0, 1}, std::numbers::pi / 4);
   const Measurement here = Dynamics(m, state).measure();
-  const Measurement there = Dynamics(m, turned(state, turn)).measure();
-  expect_near(there.stress, turned(here.stress, turn), 1e-12);
-  expect_near(there.kinetic_stress, turned(here.kinetic_stress, turn), 1e-12);
-  expect_near(there.fabric, turned(here.fabric, turn), 1e-12);
+  const Measurement there = Dynamics(m, test::turned(state, turn)).measure();
+  expect_near(there.stress, test::turned(here.stress, turn), 1e-12);
+  expect_near(there.kinetic_stress, test::turned(here.kinetic_stress, turn), 1e-12);
+  expect_near(there.fabric, test::turned(here.fabric, turn), 1e-12);
   EXPECT_EQ(there.contacts, here.contacts);
   EXPECT_NEAR(there.nu, here.nu, 1e-14);
 }
@@ -224,9 +212,9 @@ TEST(TiltedCell, D2IsPureShearInAFrameTurnedBy45Degrees) {
   EXPECT_NEAR(shear(0, 1), 1e-3, 1e-18);
   EXPECT_NEAR(shear(0, 0), 0, 1e-18);
   const Measurement here = flown(m, state, d2_flow, 200).measure();
-  const Measurement there = flown(m, turned(state, turn), shear, 200).measure();
-  expect_near(there.stress, turned(here.stress, turn), 1e-9);
-  expect_near(there.kinetic_stress, turned(here.kinetic_stress, turn), 1e-9);
+  const Measurement there = flown(m, test::turned(state, turn), shear, 200).measure();
+  expect_near(there.stress, test::turned(here.stress, turn), 1e-9);
+  expect_near(there.kinetic_stress, test::turned(here.kinetic_stress, turn), 1e-9);
   EXPECT_NEAR(trace(there.stress) / trace(here.stress), 1, 1e-10);
   EXPECT_NEAR(deviator_magnitude(there.stress) / deviator_magnitude(here.stress), 1, 1e-8);
 }
@@ -240,12 +228,12 @@ TEST(TiltedCell, ALegOfD2IsOneOfShearComponentsInATurnedFrame) {
   d2.duration = 3;
   Leg shear = d2;
   shear.strain = {0, 0, 0, 0, 0, -0.01};
-  Dynamics here(m, state), there(m, turned(state, turn));
+  Dynamics here(m, state), there(m, test::turned(state, turn));
   const StepPlan plan = plan_steps(d2, 0.01, 1);
   drive(here, d2, plan);
   drive(there, shear, plan);
   const Measurement a = here.measure(), b = there.measure();
-  expect_near(b.stress, turned(a.stress, turn), 1e-9);
+  expect_near(b.stress, test::turned(a.stress, turn), 1e-9);
   EXPECT_NEAR(deviator_magnitude(b.stress) / deviator_magnitude(a.stress), 1, 1e-8);
   EXPECT_NEAR(b.nu, a.nu, 1e-14);
   // The strain of a leg is what the box says, in a box of any shape.
@@ -258,17 +246,40 @@ TEST(TiltedCell, ALegOfD2IsOneOfShearComponentsInATurnedFrame) {
   for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(strain[c], any.strain[c], 1e-13) << c;
 }
 
+TEST(TiltedCell, ALegOfSimpleShear) {
+  const Material m;
+  const State state = with_edges(test::squeezed(m, 100, 36, 0.75), {{1, 2, -3}, {0, 1, 1}, {0, 0, 1}});
+  const Path path = Path::read(Reader(
+      parse_json(R"({"segments": [{"mode": "simple_shear", "amount": 0.02, "duration": 3}]})", "p.json"),
+      "p.json"));
+  const Leg leg = path.leg(0, Waypoint(0.75));
+  Dynamics driven(m, state);
+  drive(driven, leg, plan_steps(leg, 0.01, 1));
+  const Sym6 strain = driven.cell().strain_from(state.box);
+  for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(strain[c], leg.strain[c], 1e-14) << c;
+  EXPECT_NEAR(driven.cell().volume() / determinant(state.box), 1, 1e-13);
+  // The flow with that velocity gradient.
+  Dynamics flowing(m, state);
+  const Mat3 gradient{{0, 0.02 / 3, 0}, {0, 0, 0}, {0, 0, 0}};
+  const StepPlan plan = plan_steps(leg, 0.01, 1);
+  flowing.start_flow(plan.dt, gradient);
+  for (std::uint64_t n = 1; n <= plan.steps; ++n)
+    flowing.step(test::deformation(gradient, static_cast<double>(n) * plan.dt) * state.box, gradient);
+  expect_near(driven.measure().stress, flowing.measure().stress, 1e-9);
+}
+
 TEST(TiltedCell, AxisPermutation) {
   // x' = y, y' = z, z' = x of a packing in a box without any right angle, in a flow without any symmetry.
   const Material m;
   State state = test::squeezed(m, 100, 34, 0.75);
   const Mat3 tilt{{1, 0.4, -0.2}, {0.1, 1, 0.3}, {0.05, 0, 1}};
-  state = turned(state, tilt);  // not a rotation: a homogeneous deformation
+  state = test::turned(state, tilt);  // not a rotation: a homogeneous deformation
   const Mat3 swap{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
   const Mat3 flow{{1e-3, 2e-3, -1e-3}, {0, -1e-3, 5e-4}, {1e-3, 0, 0}};
   const Measurement here = flown(m, state, flow, 100).measure();
-  const Measurement there = flown(m, turned(state, swap), swap * flow * transposed(swap), 100).measure();
-  expect_near(there.stress, turned(here.stress, swap), 1e-9);
+  const Measurement there =
+      flown(m, test::turned(state, swap), swap * flow * transposed(swap), 100).measure();
+  expect_near(there.stress, test::turned(here.stress, swap), 1e-9);
   EXPECT_EQ(there.contacts, here.contacts);
 }
 

@@ -4,49 +4,21 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 #include <string>
 
+#include "controlled_fixture.hpp"
 #include "grainlaw/dem/files/snapshot.hpp"
-#include "grainlaw/dem/run/element_test.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
-#include "grainlaw/element/record.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {
 namespace {
 
-namespace fs = std::filesystem;
-
-class ControlledDrive : public testing::Test {
- protected:
-  void SetUp() override {
-    dir = fs::temp_directory_path() / ("grainlaw-controlled-drive-" + std::to_string(::getpid()));
-    fs::remove_all(dir);
-  }
-  void TearDown() override { fs::remove_all(dir); }
-
-  /// The record of a path on a small jammed packing.
-  Record run(const std::string& segments, const std::string& measure = R"("rows": 10)",
-             const std::string& name = "a", int count = 150, int seed = 3) {
-    const std::string json = R"({"preparation": {"count": )" + std::to_string(count) + R"(, "seed": )" +
-                             std::to_string(seed) +
-                             R"(, "nu": 0.72, "rate": 1e-3, "relax": {"duration": 200}},
-      "path": {"segments": [)" +
-                             segments + R"(]}, "measure": {)" + measure + "}}";
-    summary =
-        run_element_test(Scene::read(Reader(parse_json(json, "scene.json"), "scene.json"), ""), dir / name);
-    return Record::read_csv(dir / name / "record.csv", record_columns());
-  }
-
-  fs::path dir;
-  RunSummary summary;
-};
+using ControlledDrive = test::ControlledRun;
 
 void expect_kept(const Record& record, const char* column, double target, double tolerance) {
   for (std::size_t i = 1; i < record.rows(); ++i)
@@ -156,26 +128,10 @@ TEST_F(ControlledDrive, SaysWhatItCannotReachAndKeepsTheRest) {
 }
 
 TEST_F(ControlledDrive, GoesOnFromACheckpoint) {
-  const std::string json =
-      R"({"preparation": {"count": 150, "seed": 3, "nu": 0.72, "rate": 1e-3, "relax": {"duration": 50}},
-    "path": {"segments": [{"mode": "triaxial", "stress": 0.04, "amount": 0.01, "rate": 3e-4, "profile": "steered"},
-                          {"mode": "iso", "controls": {"nu": 0.74}, "rate": 1e-3}]},
-    "measure": {"rows": 5, "snapshots": [{"segment": 0, "eps_dev": 0.01}, {"segment": 0}]}})";
-  const Scene scene = Scene::read(Reader(parse_json(json, "scene.json"), "scene.json"), "");
-  run_element_test(scene, dir / "a");
-  int stops = 0;
-  RunSummary part;
-  for (part.stopped = true; part.stopped; ++stops) {
-    std::atomic<bool> stop = false;
-    int looks = 0;
-    RunHooks hooks;
-    hooks.stop = &stop;
-    hooks.progress = [&](double, const std::string&) { stop = ++looks > 4; };
-    part = run_element_test(scene, dir / "b", hooks);
-  }
-  EXPECT_GT(stops, 3);
-  EXPECT_EQ(read_file(dir / "a" / "record.csv"), read_file(dir / "b" / "record.csv"));
-  EXPECT_EQ(list_frames(dir / "b" / "snapshots.h5").size(), list_frames(dir / "a" / "snapshots.h5").size());
+  expect_goes_on_from_checkpoints(
+      R"({"mode": "triaxial", "stress": 0.04, "amount": 0.01, "rate": 3e-4, "profile": "steered"},
+         {"mode": "iso", "controls": {"nu": 0.74}, "rate": 1e-3})",
+      R"("rows": 5, "snapshots": [{"segment": 0, "eps_dev": 0.01}, {"segment": 0}])");
 }
 
 TEST_F(ControlledDrive, WarnsOfASnapshotThatWasNotPassed) {

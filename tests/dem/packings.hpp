@@ -48,6 +48,19 @@ inline Mat3 rotation(const Vec3& axis, double angle) {
   return Mat3::identity() + std::sin(angle) * cross + (1 - std::cos(angle)) * (cross * cross);
 }
 
+/// The packing in a frame turned so; also after any other homogeneous deformation.
+inline State turned(State state, const Mat3& turn) {
+  state.box = turn * state.box;
+  for (auto& x : state.position) x = turn * x;
+  for (auto& v : state.velocity) v = turn * v;
+  return state;
+}
+
+inline Sym6 turned(const Sym6& q, const Mat3& turn) {
+  const Mat3 a = turn * matrix_of(q) * transposed(turn);
+  return {a(0, 0), a(1, 1), a(2, 2), a(1, 2), a(0, 2), a(0, 1)};
+}
+
 /// exp(G t): the deformation of a flow with a constant velocity gradient.
 inline Mat3 deformation(const Mat3& gradient, double t) {
   Mat3 sum = Mat3::identity(), term = Mat3::identity();

@@ -126,11 +126,11 @@ TEST(Path, PresetsOfStressControl) {
   EXPECT_NEAR(legs[0].strain[2], 0.2, 1e-15);
   EXPECT_NEAR(legs[0].eps_dev[1], 0.3, 1e-15);
   EXPECT_TRUE(legs[1].control.by_stress(0));
-  EXPECT_FALSE(std::get<StressTarget>(legs[1].control.axis[0]).stress);
+  EXPECT_FALSE(std::get<StressTarget>(legs[1].control.component[0]).stress);
   EXPECT_FALSE(legs[1].control.by_stress(1) || legs[1].control.by_stress(2));
   EXPECT_EQ(legs[1].strain, (StrainTensor{0, 0.1, 0}));
   for (const std::size_t side : {0u, 1u})
-    EXPECT_EQ(std::get<StressTarget>(legs[2].control.axis[side]).stress, 0.01);
+    EXPECT_EQ(std::get<StressTarget>(legs[2].control.component[side]).stress, 0.01);
   EXPECT_EQ(legs[2].strain, (StrainTensor{0, 0, -0.1}));
   EXPECT_EQ(legs[2].control.servo.rate, 1e-4);
   EXPECT_EQ(legs[2].control.servo.wait, 5000);  // a strain of 0.5
@@ -210,13 +210,14 @@ TEST(Path, StrainUnderStressControlIsNotKnownInAdvance) {
 
 TEST(Path, RefusesStressControlThatMeansNothing) {
   EXPECT_EQ(refused_segment(R"({"mode": "triaxial", "amount": 0.1, "stress": -0.01})"),
-            "p.json: segments[0].stress: must be > 0 and <= 1 of k* = k/(2<r>), got -0.01");
+            "p.json: segments[0].stress: must be > 0 and <= 1 of k* = k/(2<r>) (at 0 grains have lost their "
+            "contacts), got -0.01");
   EXPECT_EQ(refused_segment(R"({"mode": "biaxial", "amount": 0.1, "stress": "hold"})"),
             "p.json: segments[0].stress: must be one of start, got \"hold\"");
   EXPECT_EQ(
       refused_segment(
           R"({"mode": "control", "x": {"strain": 0.1, "stress": 0.1}, "y": {"strain": 0}, "z": {"strain": 0}})"),
-      "p.json: segments[0].x: redundant: strain and stress both control this axis; give one");
+      "p.json: segments[0].x: redundant: strain and stress both control this component; give one");
   EXPECT_THAT(refused_segment(R"({"mode": "d2", "amount": 0.1, "servo": {}})"),
               testing::HasSubstr("segments[0].servo: unknown key"));
   EXPECT_EQ(refused_segment(R"({"mode": "d2", "amount": 0.1, "profile": "steered", "duration": 10})"),
@@ -231,6 +232,114 @@ TEST(Path, RefusesStressControlThatMeansNothing) {
       "passes");
   EXPECT_THAT(refused_segment(R"({"mode": "d2", "amount": 0.1, "increment": 1e-5})"),
               testing::HasSubstr("segments[0].increment: unknown key"));
+}
+
+TEST(Path, ControlOfShearComponents) {
+  const auto path = path_of(R"({"segments": [
+      {"mode": "control", "x": {"stress": "start"}, "y": {"strain": 0.1}, "z": {"strain": 0},
+       "yz": {"stress": 0}, "xz": {"strain": -0.02}, "xy": {"stress": -0.01}},
+      {"mode": "control", "x": {"strain": 0}, "y": {"strain": 0}, "z": {"strain": 0}, "xy": {"strain": -0.2}, "P": "start"},
+      {"mode": "control", "x": {"strain": 0}, "y": {"strain": 0}, "z": {"strain": 0}, "yz": {"strain": 0}, "xy": {"stress": "start"}}]})");
+  const auto legs = path.nominal_legs(0.7);
+  EXPECT_EQ(legs[0].strain, (StrainTensor{0, 0.1, 0, 0, -0.02, 0}));
+  EXPECT_TRUE(legs[0].control.axis_by_stress() && legs[0].control.shear_by_stress());
+  EXPECT_TRUE(legs[0].control.by_stress(3) && legs[0].control.by_stress(5));
+  EXPECT_FALSE(legs[0].control.by_stress(1) || legs[0].control.by_stress(4));
+  EXPECT_EQ(std::get<StressTarget>(legs[0].control.component[3]).stress, 0.0);
+  EXPECT_EQ(std::get<StressTarget>(legs[0].control.component[5]).stress, -0.01);
+  EXPECT_EQ(legs[1].duration, 0.2 / 2.839e-5);  // by its largest component
+  EXPECT_NEAR(legs[1].eps_dev[1] - legs[1].eps_dev[0], 0.2 * std::sqrt(3.0), 1e-15);
+  EXPECT_FALSE(legs[1].control.shear_by_stress() || legs[1].control.axis_by_stress());
+  EXPECT_FALSE(legs[2].drives());
+  EXPECT_FALSE(std::get<StressTarget>(legs[2].control.component[5]).stress);
+  EXPECT_EQ(Path::read({path.to_json(), "p.json"}).to_json(), path.to_json());
+  const Json segments = path.to_json()["segments"];
+  EXPECT_EQ(segments[0]["xy"], (Json{{"stress", -0.01}}));
+  EXPECT_EQ(segments[0]["xz"], (Json{{"strain", -0.02}}));
+  EXPECT_EQ(segments[2]["xy"], (Json{{"stress", "start"}}));
+  EXPECT_FALSE(segments[1].contains("yz") || segments[2].contains("yz"));  // strain 0 is the default
+}
+
+TEST(Path, RefusesShearControlThatMeansNothing) {
+  const auto refused = [](const std::string& more, const std::string& y = R"({"strain": 0.1})") {
+    return refused_segment(R"({"mode": "control", "x": {"strain": 0}, "z": {"strain": 0}, "y": )" + y + ", " +
+                           more + "}");
+  };
+  EXPECT_EQ(refused(R"("xy": {"stress": 2})"),
+            "p.json: segments[0].xy.stress: must be >= -1 and <= 1 of k* = k/(2<r>), got 2");
+  EXPECT_EQ(refused(R"("xy": {"stress": "hold"})"),
+            "p.json: segments[0].xy.stress: must be one of start, got \"hold\"");
+  EXPECT_EQ(refused(R"("yz": {"stress": 0, "strain": 0})"),
+            "p.json: segments[0].yz: redundant: strain and stress both control this component; give one");
+  EXPECT_EQ(refused(R"("xz": {})"), "p.json: segments[0].xz: must give strain or stress");
+  EXPECT_EQ(refused(R"("yx": {"strain": 0.1})"), "p.json: segments[0].yx: unknown key, did you mean xy?");
+  EXPECT_EQ(
+      refused(R"("xy": {"stress": -0.01})", R"({"stress": 0})"),
+      "p.json: segments[0].y.stress: must be > 0 and <= 1 of k* = k/(2<r>) (at 0 grains have lost their "
+      "contacts), got 0");
+  EXPECT_EQ(refused(R"("xy": {"strain": 0})", R"({"strain": 0})"),
+            "p.json: segments[0]: has nothing to do: no component has a strain or a stress");
+  EXPECT_EQ(refused(R"("xy": {"stress": 0.01}, "profile": "cosine")", R"({"strain": 0})"),
+            "p.json: segments[0].profile: means nothing here: no component is strained");
+  EXPECT_EQ(
+      refused(R"("xy": {"stress": 0.01}, "P": 0.1)", R"({"stress": 0.1})"),
+      "p.json: segments[0].P: needs a strain on each of x, y, z: the isotropic strain that keeps P adds "
+      "to it");
+  EXPECT_EQ(
+      refused(R"("xy": {"strain": 0.01}, "profile": "quasistatic")"),
+      "p.json: segments[0].profile: must not be quasistatic in control; with strains alone, components is "
+      "the same");
+}
+
+TEST(Path, SimpleShear) {
+  const auto path = path_of(R"({"segments": [{"mode": "simple_shear", "amount": 1.5, "rate": 1e-4},
+      {"mode": "simple_shear", "amount": -1.5, "duration": 100, "profile": "cosine"}]})");
+  const auto legs = path.legs(0.7);
+  EXPECT_DOUBLE_EQ(legs[0].duration, 1.5e4);
+  EXPECT_EQ(legs[0].gamma, 1.5);
+  // Squares of stretches are the eigenvalues of (1 + gamma^2, gamma; gamma, 1): exp(2 e) + exp(-2 e) = 2 +
+  // gamma^2.
+  const double e = legs[0].eps_dev[1] / std::sqrt(3.0);
+  EXPECT_NEAR(2 * std::cosh(2 * e), 2 + 1.5 * 1.5, 1e-14);
+  EXPECT_NEAR(deviator_magnitude(legs[0].strain), legs[0].eps_dev[1], 1e-15);
+  EXPECT_LT(legs[0].strain[5], 0);
+  EXPECT_LT(legs[0].strain[0], 0);  // the longest axis turns towards x
+  EXPECT_EQ(legs[0].eps_vol[1], 0);
+  EXPECT_NEAR(legs[1].eps_dev[1], 0, 1e-15);
+  for (const Leg& leg : legs)
+    for (const double f : {0.0, 0.3, 1.0}) EXPECT_NEAR(leg.fraction_at(leg.eps_dev_at(f)), f, 1e-15);
+  EXPECT_NEAR(legs[0].eps_dev_at(1), legs[0].eps_dev[1], 1e-15);
+  const SignConvention sign(legs);
+  EXPECT_DOUBLE_EQ(sign.signed_deviator({1, 1, 1, 0, 0, -0.5}, 1), 0.5 * std::sqrt(3.0));
+  EXPECT_EQ(Path::read({path.to_json(), "p.json"}).to_json(), path.to_json());
+  EXPECT_TRUE(path.spins());
+  try {
+    path.need_law_can_follow();
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("p.json: segments[0].mode: must not be simple_shear"));
+  }
+  EXPECT_EQ(refused_segment(R"({"mode": "simple_shear", "amount": 0})"),
+            "p.json: segments[0].amount: must not be 0");
+  EXPECT_THAT(refused_segment(R"({"mode": "simple_shear", "controls": {"eps_dev": 0.1}})"),
+              testing::HasSubstr("segments[0].amount"));
+  EXPECT_THAT(refused_segment(R"({"mode": "simple_shear", "amount": 0.1, "profile": "quasistatic"})"),
+              testing::HasSubstr("segments[0].profile: must be one of constant, cosine, got"));
+}
+
+TEST(SignConvention, AShearStressIsTheAxisWhereNothingIsStrained) {
+  const auto waits = [](const std::string& xy) {
+    return R"({"mode": "control", "x": {"stress": 0.1}, "y": {"stress": 0.1}, "z": {"stress": 0.1}, "xy": {"stress": )" +
+           xy + "}}";
+  };
+  const auto legs = path_of(R"({"segments": [)" + waits("-0.01") + "," + waits("0.01") + "," + waits("0") +
+                            "," + R"({"mode": "d2", "amount": 0.1}, )" + waits("\"start\"") + "]}")
+                        .nominal_legs(0.7);
+  const SignConvention sign(legs);
+  const Sym6 sheared{1, 1, 1, 0, 0, -0.5};
+  for (const std::size_t i : {0u, 1u, 2u})  // back along the axis of the first
+    EXPECT_DOUBLE_EQ(sign.signed_deviator(sheared, i), 0.5 * std::sqrt(3.0)) << i;
+  for (const std::size_t i : {3u, 4u}) EXPECT_EQ(sign.axis(i), (StrainTensor{-1, 1, 0}));
 }
 
 TEST(SignConvention, FollowsTheAxesOfTheMode) {

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "walks.hpp"
 
 namespace grainlaw::model {
@@ -49,6 +51,43 @@ TEST(PathControl, ModesAreMixesOfTheirAxes) {
             R"({"mode": "control", "x": {"stress": 0.03}, "y": {"stress": 0.03}, "z": {"stress": 0.03}})",
             form));
   }
+}
+
+TEST(PathControl, ShearAtConstantPressureAlongAnyAxis) {
+  // Pure shear of xy by e is that of D2 by sqrt(3) e, in a frame turned by 45 degrees.
+  for (const Form form : forms)
+    expect_same(
+        from_711(
+            R"({"mode": "constant_p", "amount": 0.1, "P": 0.03}, {"mode": "constant_p", "amount": -0.05})",
+            form),
+        from_711(
+            R"({"mode": "control", "x": {"strain": 0}, "y": {"strain": 0}, "z": {"strain": 0}, "xy": {"strain": )" +
+                to_text(-0.1 / std::sqrt(3.0)) +
+                R"(}, "P": 0.03}, {"mode": "control", "x": {"strain": 0}, "y": {"strain": 0}, "z": {"strain": 0},
+                 "xy": {"strain": )" +
+                to_text(0.05 / std::sqrt(3.0)) + R"(}, "P": "start"})",
+            form));
+}
+
+TEST(PathControl, ShearStressesAreRefused) {
+  const auto control = [](const std::string& y, const std::string& more) {
+    return refused(R"({"mode": "control", "x": {"strain": 0}, "y": )" + y + R"(, "z": {"strain": 0}, )" +
+                   more + "}");
+  };
+  const std::string why = ": cannot be followed by the law, which has one direction of shear: ";
+  EXPECT_THAT(control(R"({"strain": 0.01})", R"("xy": {"stress": 0})"),
+              HasSubstr("p.json: segments[0].xy" + why + "it has no shear stress as a target"));
+  EXPECT_THAT(control(R"({"strain": 0})", R"("xz": {"stress": "start"}, "P": 0.03)"),
+              HasSubstr("p.json: segments[0].xz" + why + "it has no shear stress as a target"));
+  EXPECT_THAT(control(R"({"stress": 0.03})", R"("yz": {"strain": 0.01})"),
+              HasSubstr("p.json: segments[0].yz" + why + "stresses on axes do not go with a shear strain"));
+}
+
+TEST(PathControl, SimpleShearIsRefused) {
+  const std::string why = "segments[0].mode: must not be simple_shear: its axes of strain turn";
+  EXPECT_THAT(refused(R"({"mode": "simple_shear", "amount": 0.1})"), HasSubstr(why));
+  EXPECT_THAT(refused(R"({"mode": "simple_shear", "amount": 0.1}, {"mode": "constant_p", "amount": 0.1})"),
+              HasSubstr(why));
 }
 
 TEST(PathControl, ThreeStressesAreAPressureAndADeviator) {

@@ -221,6 +221,18 @@ TEST(Predict, FollowsTheMeasuredStrainOfStressControl) {
       EXPECT_NEAR(p.record[column][i], direct.record[column][i], 1e-6) << column << " in row " << i;
   EXPECT_EQ(measured.segments, direct.record["segment"]);
   EXPECT_THROW(predict(thesis(), asked), Error);
+  // Along another axis it is the same to the law.
+  const MeasuredPath sheared = measured_path(
+      direct.record,
+      path(
+          R"({"mode": "relax"}, {"mode": "control", "x": {"strain": 0}, "y": {"strain": 0}, "z": {"strain": 0},
+               "xy": {"strain": -0.05}, "P": "start"}, {"mode": "isotropic_stress", "P": 0.1})"));
+  const StrainTensor& one = sheared.path.segments.at(10).strain;
+  EXPECT_EQ(one[0], one[1]);
+  EXPECT_LT(one[5], 0);
+  const Prediction q = predict(thesis(), sheared.path, sheared.samples);
+  for (const char* column : {"nu", "eps_dev", "P", "sigma_dev", "F_dev"})
+    EXPECT_LT(difference(p, q, column), 1e-10) << column;
 }
 
 TEST(Predict, SaysHowMuchPressureIsPumped) {
