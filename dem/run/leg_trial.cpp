@@ -15,8 +15,8 @@ constexpr double part_seconds = 0.5, warm_up = 0.3, whole_seconds = 1.5;
 constexpr std::uint64_t fewest_looks = 20, steps_per_look = 10;
 
 Control kept_at_start(Control control) {
-  for (AxisControl& axis : control.axis)
-    if (auto* target = std::get_if<StressTarget>(&axis)) target->stress.reset();
+  for (ComponentControl& component : control.component)
+    if (auto* target = std::get_if<StressTarget>(&component)) target->stress.reset();
   if (control.mean) control.mean->stress.reset();
   return control;
 }

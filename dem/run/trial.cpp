@@ -28,8 +28,14 @@ double step_of(const Material& material, const State& state, const Stage& stage)
                    Measure{}.time_step);
 }
 
-/// exp(G dt) of a G without spin.
-Mat3 stretch_of(const Mat3& gradient, double dt) {
+/// The mean of G along the leg, 1/us.
+Mat3 mean_gradient(const State& state, const Leg& leg) {
+  return Drive(state.box, leg).gradient(0.5 * leg.duration, leg.duration);
+}
+
+/// exp(G dt).
+Mat3 stretch_of(const Leg& leg, const Mat3& gradient, double dt) {
+  if (leg.gamma) return Mat3::identity() + dt * gradient;  // G G = 0
   const auto grown = [dt](double rate) { return std::exp(rate * dt); };
   if (!gradient.is_diagonal()) return apply(spectrum(gradient), grown);
   const Vec3 rate = gradient.diagonal();
@@ -66,8 +72,8 @@ Trial::Trial(const Material& material, const State& state, const Stage& stage)
       start_(state),
       dt_(step_of(material, state, stage)),
       grains_(static_cast<double>(state.count())),
-      gradient_(-1 / stage.leg.duration * matrix_of(stage.leg.strain)),
-      stretch_(stretch_of(gradient_, dt_)),
+      gradient_(mean_gradient(state, stage.leg)),
+      stretch_(stretch_of(stage.leg, gradient_, dt_)),
       heap_before_(heap_bytes()),
       dynamics_(material, state) {
   cost_.nu = state.volume_fraction();
