@@ -179,7 +179,8 @@ std::vector<calibrate::BenchError> write_result(const calibrate::Bench& bench, c
               {"errors", to_json(errors)}};
   write_file(dir / "speed-against-error.json", result.dump(1) + "\n");
   write_file(dir / "speed-against-error.csv", to_csv(errors));
-  write_file(dir / "speed-against-error.svg", bench_picture(bench, errors));
+  write_file(dir / "speed-against-error.svg", bench_picture(bench, errors, BenchCost::core_seconds));
+  write_file(dir / "steps-against-error.svg", bench_picture(bench, errors, BenchCost::particle_steps));
   write_file(dir / "report.html", bench_page(bench, errors, advice(errors)));
   return errors;
 }

@@ -57,32 +57,52 @@ std::string test_name(BenchTest test) {
   return test == BenchTest::preparation ? "preparation" : mode_name(name_of(test));
 }
 
-/// Error over cost of one knob, and beside it what chance alone would make.
-void add_curves(Panel& panel, const std::vector<BenchError>& errors, BenchTest test,
-                const std::string& quantity, Knob knob) {
-  const std::string colour = nth_colour(static_cast<std::size_t>(knob));
-  Series dots{label_of(knob), Draw::dots, colour, {}, {}}, line = dots;
-  Series band{label_of(knob) + ", chance alone", Draw::dashes, colour, {}, {}};
-  line.draw = Draw::line;
-  line.in_legend = false;
-  for (const BenchError& e : errors) {
-    if (e.finest || e.test != test || e.quantity != quantity || e.knob != knob) continue;
-    for (Series* series : {&dots, &line, &band}) series->x.push_back(e.particle_steps);
-    dots.y.push_back(e.comparison.error);
-    line.y.push_back(e.comparison.error);
-    band.y.push_back(e.comparison.band);
-  }
-  for (Series* series : {&line, &dots, &band}) panel.series.push_back(*series);
+double cost_of(const BenchError& line, BenchCost cost) {
+  return cost == BenchCost::core_seconds ? line.core_s : line.particle_steps;
 }
 
-Figure figure_of(const calibrate::Bench& bench, const std::vector<BenchError>& errors) {
+/// Error over cost of one knob, and behind it, shaded, what chance alone would make.
+void add_curves(Panel& panel, const std::vector<BenchError>& errors, BenchTest test,
+                const std::string& quantity, Knob knob, BenchCost cost) {
+  const std::string colour = nth_colour(static_cast<std::size_t>(knob));
+  Series dots{label_of(knob), Draw::dots, colour, {}, {}}, line = dots, edge = dots;
+  Series band{label_of(knob) + ", chance alone", Draw::shade, colour, {}, {}};
+  line.draw = Draw::line;
+  edge.draw = Draw::dashes;
+  line.in_legend = edge.in_legend = false;
+  for (const BenchError& e : errors) {
+    if (e.finest || e.test != test || e.quantity != quantity || e.knob != knob) continue;
+    for (Series* series : {&dots, &line, &band, &edge}) series->x.push_back(cost_of(e, cost));
+    for (Series* series : {&dots, &line}) series->y.push_back(e.comparison.error);
+    for (Series* series : {&band, &edge}) series->y.push_back(e.comparison.band);
+  }
+  for (Series* series : {&band, &edge, &line, &dots}) panel.series.push_back(*series);
+}
+
+Markup caption_of(const calibrate::Bench& bench, BenchCost cost) {
+  if (cost == BenchCost::particle_steps)
+    return "<b>The same over grains times steps</b>"_html +
+           text(
+               ", which no machine changes. A step of a flow and a pass of a minimiser do not cost the "
+               "same.");
+  return "<b>Speed against error</b>: "_html +
+         text("N = " + std::to_string(bench.count) +
+              ", median seconds of a core. Dots: deviation of the mean over runs from that of the finest "
+              "setting of the knob, root mean square along the path over that of the quantity. Shaded: what "
+              "it would be if chance (the chaos of the flow, or of the packings where these differ) were the "
+              "only difference.");
+}
+
+Figure figure_of(const calibrate::Bench& bench, const std::vector<BenchError>& errors, BenchCost cost) {
+  const bool seconds = cost == BenchCost::core_seconds;
   std::vector<std::pair<BenchTest, std::string>> panels;
   for (const BenchError& e : errors)
     if (const std::pair key{e.test, e.quantity}; std::find(panels.begin(), panels.end(), key) == panels.end())
       panels.push_back(key);
   Figure figure;
-  figure.name = "speed-against-error";
-  figure.alt = "Error relative to the finest setting over the cost of a run, one curve per knob";
+  figure.name = seconds ? "speed-against-error" : "steps-against-error";
+  figure.alt = std::string("Error relative to the finest setting over ") +
+               (seconds ? "seconds of a core" : "particle-steps") + ", one curve per knob";
   figure.smallest_width = "640px";
   const auto areas = grid(figure, panels.size(), 3, 190);
   for (std::size_t i = 0; i < panels.size(); ++i) {
@@ -90,21 +110,16 @@ Figure figure_of(const calibrate::Bench& bench, const std::vector<BenchError>& e
     const Symbol* symbol = find_symbol(quantity);
     Panel panel{areas[i],
                 enhanced(test_name(test)) + ": " + (symbol ? std::string(symbol->plot) : quantity),
-                "particle-steps of a run",
+                seconds ? "seconds of a core" : "particle-steps of a run",
                 i % 3 == 0 ? "relative error" : "",
                 {},
                 {},
                 {}};
     panel.log_x = panel.log_y = true;
-    for (const Knob knob : calibrate::all_knobs()) add_curves(panel, errors, test, quantity, knob);
+    for (const Knob knob : calibrate::all_knobs()) add_curves(panel, errors, test, quantity, knob, cost);
     figure.panels.push_back(std::move(panel));
   }
-  figure.caption =
-      "<b>Speed against error</b>: "_html +
-      text("N = " + std::to_string(bench.count) +
-           ". Dots: deviation of the mean over runs from that of the finest setting of the knob, root mean "
-           "square along the path over that of the quantity. Dashes: what it would be if chance (the chaos "
-           "of the flow, or of the packings where these differ) were the only difference.");
+  figure.caption = caption_of(bench, cost);
   return figure;
 }
 
@@ -135,15 +150,20 @@ std::string bench_page(const calibrate::Bench& bench, const std::vector<BenchErr
   Markup body = element("h1", text(title)) + "\n"_html +
                 element("p", text("grainlaw " + build_name(version(), commit())), {{"class", "lead"}});
   body += element("pre", text(advice)) + "\n"_html;
-  if (!errors.empty()) body += draw(figure_of(bench, errors)) + table_of(errors);
+  if (!errors.empty()) {
+    for (const BenchCost cost : {BenchCost::core_seconds, BenchCost::particle_steps})
+      body += draw(figure_of(bench, errors, cost));
+    body += table_of(errors);
+  }
   const Markup head = "<meta charset=\"utf-8\"/>\n"_html + element("title", text(title)) +
                       element("style", Markup::trusted(style_sheet));
   return "<!DOCTYPE html>\n" +
          element("html", element("head", head) + element("body", body), {{"lang", "en"}}).str() + "\n";
 }
 
-std::string bench_picture(const calibrate::Bench& bench, const std::vector<BenchError>& errors) {
-  return drawn_with_legend(figure_of(bench, errors), "dashed: chance alone");
+std::string bench_picture(const calibrate::Bench& bench, const std::vector<BenchError>& errors,
+                          BenchCost cost) {
+  return drawn_with_legend(figure_of(bench, errors, cost), "shaded: chance alone");
 }
 
 }  // namespace grainlaw::apps

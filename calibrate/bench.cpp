@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "grainlaw/dem/drive/quasistatic.hpp"
@@ -41,16 +42,31 @@ std::string run_name(BenchTest test, const BenchSetting& setting, std::int64_t s
          std::to_string(twin);
 }
 
+/// The largest component of the strain between two rows of a test.
+double strain_of_a_row(const Bench& bench, BenchTest test) {
+  const double strain = test == BenchTest::d2 ? bench.eps_dev / std::numbers::sqrt3
+                                              : std::log(Bench::nu_start / bench.nu_end) / 3;
+  return strain / Bench::rows;
+}
+
+/// The strain of an increment where `many` of them make a row: three digits, the last one rounded up, so that
+/// there are no more of them.
+double increment_of(const Bench& bench, BenchTest test, int many) {
+  const double strain = strain_of_a_row(bench, test) / many;
+  const double digit = std::pow(10, std::floor(std::log10(strain)) - 2);
+  return std::stod(short_text(std::ceil(strain / digit) * digit));
+}
+
 /// The values of a knob, the finest last.
-std::vector<double> values_of(Knob knob, std::int64_t count) {
-  const auto n = static_cast<double>(count);
+std::vector<double> values_of(Knob knob, BenchTest test, const Bench& bench) {
+  const auto n = static_cast<double>(bench.count);
   switch (knob) {
     case Knob::time_step:
       return {5, 10, 20, 50, 200};
     case Knob::rate:
       return {30, 10, 3, 1, 0.3, slowest};
     case Knob::method:
-      return {3e-4, 1e-4, 3e-5, 0};
+      return {increment_of(bench, test, 1), increment_of(bench, test, 3), increment_of(bench, test, 10), 0};
     case Knob::gas_step:
       return {5, 10, 20, 50, 100};
     case Knob::count:
@@ -83,10 +99,8 @@ BenchSetting setting_of(Knob knob, double value, std::int64_t count) {
   return setting;
 }
 
-/// Where nothing rearranges, as on the short unloading, increments of any size lead to the same balance.
 std::vector<BenchTest> tests_of(Knob knob) {
   if (knob == Knob::gas_step) return {BenchTest::preparation};
-  if (knob == Knob::method) return {BenchTest::d2};
   return {BenchTest::iso, BenchTest::d2};
 }
 
@@ -243,7 +257,7 @@ std::vector<Sweep> sweeps(const Bench& bench) {
     const std::vector<BenchTest> tests = tests_of(knob);
     for (const BenchTest test : tests) {
       Sweep sweep{knob, test, {}};
-      for (const double value : values_of(knob, bench.count)) {
+      for (const double value : values_of(knob, test, bench)) {
         const BenchSetting setting = setting_of(knob, value, bench.count);
         sweep.variants.push_back({knob, test, value, setting, records_of(bench, knob, test, setting)});
       }

@@ -11,7 +11,9 @@
 
 namespace grainlaw::calibrate {
 
-/// What is varied. The step of the gas is that of preparation; it is judged by the packing that comes out.
+/// What is varied. The method: increments of minimised energy, one, three and ten to a row, against a flow at
+/// the slowest rate; where nothing rearranges, the flow is the one that lags. The step of the gas is that of
+/// preparation; it is judged by the packing that comes out.
 enum class Knob { time_step, rate, method, gas_step, count };
 std::string name_of(Knob knob);  ///< "time_step", …
 const std::vector<Knob>& all_knobs();
@@ -51,7 +53,7 @@ struct BenchSetting {
 struct Variant {
   Knob knob;
   BenchTest test;
-  double value;  ///< steps per contact duration, rate over the default, increment, grains
+  double value;  ///< steps per contact duration, rate over the default, increment (0: flow), grains
   BenchSetting setting;
   std::vector<std::vector<std::string>> records;  ///< names, by group
 };

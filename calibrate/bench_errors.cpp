@@ -73,18 +73,26 @@ struct Cost {
   std::size_t runs = 0;
 };
 
+double median_of(std::vector<double> values) {
+  if (values.empty()) return undefined;
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
 Cost cost_of(const Variant& variant, const RunFolder& folder) {
   Cost cost;
+  std::vector<double> seconds;
   for (const auto& names : variant.records)
     for (const std::string& name : names) {
       const Json provenance = load_json(folder.record(name) / "provenance.json");
       cost.particle_steps += provenance.at("particle_steps").get<double>();
       const auto file = folder.record(name) / core_time_file;
-      cost.core_s += std::filesystem::exists(file) ? load_json(file).at("core_s").get<double>() : undefined;
+      if (std::filesystem::exists(file)) seconds.push_back(load_json(file).at("core_s").get<double>());
       ++cost.runs;
     }
   cost.particle_steps /= static_cast<double>(cost.runs);
-  cost.core_s /= static_cast<double>(cost.runs);
+  cost.core_s = median_of(std::move(seconds));
   return cost;
 }
 

@@ -34,9 +34,10 @@ struct BenchError {
   double value;
   std::string quantity;
   std::size_t runs;
-  double particle_steps, core_s;  ///< of one run, mean; core_s NaN where a run did not say
-  Comparison comparison;          ///< with the finest value; zero for that one itself
-  double scatter;                 ///< of a single run about the mean, over |m|: the chaos of the flow
+  double particle_steps;  ///< of one run, mean
+  double core_s;          ///< of one run, median of those that say, for others may use the machine; else NaN
+  Comparison comparison;  ///< with the finest value; zero for that one itself
+  double scatter;         ///< of a single run about the mean, over |m|: the chaos of the flow
   bool finest;
 };
 

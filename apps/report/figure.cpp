@@ -71,6 +71,8 @@ std::string plot_item(const std::string& name, const Series& series) {
       return what + " with lines lw 1.8 dt (7,4)" + colour;
     case Draw::dotted:
       return what + " with lines lw 2 dt (2,3)" + colour;
+    case Draw::shade:
+      return what + " with filledcurves x1 fs transparent solid 0.15 noborder" + colour;
   }
   return what;
 }
@@ -234,6 +236,8 @@ Markup swatch(const Series& series) {
   if (series.draw == Draw::dashes) shape += " stroke-dasharray=\"7,4\"";
   if (series.draw == Draw::dotted) shape += " stroke-dasharray=\"2,3\"";
   shape += "/>";
+  if (series.draw == Draw::shade)
+    shape = "<path d=\"M1,1H27V11H1Z\" fill=\"" + stroke + "\" fill-opacity=\"0.15\"/>";
   if (series.draw == Draw::dots) shape = "<circle cx=\"14\" cy=\"6\" r=\"3\" fill=\"" + stroke + "\"/>";
   if (series.draw == Draw::bars) {
     shape = "<path d=\"M14,0V12\" stroke=\"" + stroke + "\"/><circle cx=\"14\" cy=\"6\" r=\"3\" fill=\"" +

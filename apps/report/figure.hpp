@@ -11,7 +11,8 @@
 
 namespace grainlaw::report {
 
-enum class Draw { dots, line, dashes, dotted, bars };
+/// `shade`: from the values down to the lower edge of the panel.
+enum class Draw { dots, line, dashes, dotted, bars, shade };
 
 struct Series {
   std::string label;  ///< plain text for legend and tooltip; series of one label share an entry

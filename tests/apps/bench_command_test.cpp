@@ -31,7 +31,8 @@ TEST_F(BenchCommand, WritesTablePictureAndPageAndGoesOn) {
     EXPECT_LT(entry.at("scatter").get<double>(), 0.5);
   }
   EXPECT_THAT(read("b/speed-against-error.csv"), HasSubstr("time_step,200,d2,F_dev,2,"));
-  EXPECT_THAT(read("b/speed-against-error.svg"), HasSubstr("</svg>"));
+  EXPECT_THAT(read("b/speed-against-error.svg"), HasSubstr("seconds of a core"));
+  EXPECT_THAT(read("b/steps-against-error.svg"), HasSubstr("particle-steps of a run"));
   EXPECT_THAT(read("b/report.html"), HasSubstr("</html>"));
   const std::string csv = read("b/speed-against-error.csv");
   fs::remove_all(folder / "b/records/d2-n32-step5-rate1-s1-t1");

@@ -147,6 +147,26 @@ TEST_F(BenchFolder, ReadsWhatIsThereAndLeavesOutWhatIsNot) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + static_cast<long>(errors.size()));
 }
 
+TEST_F(BenchFolder, SecondsAreTheMedianOfTheRunsThatSay) {
+  Bench bench;
+  bench.knobs = {Knob::time_step};
+  const Sweep iso = sweeps(bench).front();
+  const Variant& finest = iso.variants.back();
+  for (const auto& group : finest.records)
+    for (const auto& name : group) write(name, 0.5);
+  const auto seconds = [&](std::size_t packing, std::size_t twin, double core_s) {
+    write_file(folder.record(finest.records[packing][twin]) / core_time_file,
+               Json{{"core_s", core_s}}.dump());
+  };
+  seconds(0, 0, 1), seconds(0, 1, 100), seconds(1, 0, 2), seconds(1, 1, 4);
+  EXPECT_EQ(bench_errors(bench, folder).at(0).core_s, 3);
+  fs::remove(folder.record(finest.records[1][1]) / core_time_file);  // of a run that was killed
+  EXPECT_EQ(bench_errors(bench, folder).at(0).core_s, 2);
+  for (const auto& group : finest.records)
+    for (const auto& name : group) fs::remove(folder.record(name) / core_time_file);
+  EXPECT_TRUE(std::isnan(bench_errors(bench, folder).at(0).core_s));
+}
+
 TEST_F(BenchFolder, WithoutTheFinestThereIsNoError) {
   Bench bench;
   bench.knobs = {Knob::time_step};

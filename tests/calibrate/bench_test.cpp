@@ -7,6 +7,8 @@
 #include <set>
 
 #include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/dem/drive/quasistatic.hpp"
+#include "grainlaw/dem/scene/scene.hpp"
 
 namespace grainlaw::calibrate {
 namespace {
@@ -79,6 +81,37 @@ TEST(Bench, VariesOneThingAtATime) {
           other_method ? segment : varied.at(sweep.knob))
           << name_of(sweep.knob);
     }
+}
+
+TEST(Bench, IncrementsAreOneThreeAndTenToARowOfEitherTest) {
+  for (const auto& [eps_dev, nu_end] : {std::pair{0.05, 0.74}, {0.02, 0.748}, {0.1, 0.6}, {0.001, 0.7499}}) {
+    Bench bench;
+    bench.knobs = {Knob::method};
+    bench.eps_dev = eps_dev;
+    bench.nu_end = nu_end;
+    const auto scenes = scenes_of(plan(bench));
+    const std::vector<Sweep> both = sweeps(bench);
+    ASSERT_EQ(both.size(), 2u);
+    for (const Sweep& sweep : both) {
+      std::vector<std::uint64_t> to_a_row;
+      for (const Variant& variant : sweep.variants) {
+        if (variant.value == 0) continue;
+        const Json& json = scenes.at(variant.records[0][0]);
+        const Leg leg = dem::Scene::read(Reader(json, ""), "").legs(Bench::nu_start).at(0);
+        to_a_row.push_back(dem::plan_increments(leg, Bench::rows).steps / Bench::rows);
+      }
+      EXPECT_EQ(to_a_row, (std::vector<std::uint64_t>{1, 3, 10})) << name_of(sweep.test) << " " << nu_end;
+    }
+  }
+}
+
+TEST(Bench, MethodsAndRatesAreHeldAgainstTheSameFlow) {
+  std::map<BenchTest, std::set<std::string>> finest;
+  for (const Sweep& sweep : sweeps(Bench{}))
+    if (sweep.knob == Knob::method || sweep.knob == Knob::rate)
+      finest[sweep.test].insert(sweep.variants.back().records[0][0]);
+  ASSERT_EQ(finest.size(), 2u);
+  for (const auto& [test, names] : finest) EXPECT_EQ(names.size(), 1u) << name_of(test);
 }
 
 TEST(Bench, TheFinestValueComesLastAndCostsMost) {

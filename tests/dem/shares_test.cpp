@@ -163,32 +163,6 @@ TEST(Shares, ReadNoGrainOfAnotherThatTheyDoNotList) {
   }
 }
 
-// Instruction sets add in orders of their own: at first by rounding, later as far apart as chaos takes them.
-TEST(Targets, GoApartByRoundingOnly) {
-  const Material m;
-  const State start = test::squeezed(m, 500, 6, 0.7, 0.1);
-  const auto after = [&](std::int64_t target, int steps) {
-    hwy::SetSupportedTargetsForTest(target);
-    Dynamics dynamics(m, start);
-    dynamics.start(time_step(m, dynamics.grains().smallest_radius(), 0.1), {});
-    for (int n = 0; n < steps; ++n) dynamics.step();
-    hwy::SetSupportedTargetsForTest(0);
-    return dynamics.state();
-  };
-  const State plain = after(HWY_SCALAR, 50);
-  for (const std::int64_t target : {HWY_AVX2, HWY_AVX3}) {
-    if ((hwy::SupportedTargets() & target) == 0) continue;
-    const State other = after(target, 50);
-    double worst = 0;
-    for (std::size_t i = 0; i < plain.count(); ++i)
-      for (std::size_t c = 0; c < 3; ++c)
-        worst = std::max(worst, std::abs(other.position[i][c] - plain.position[i][c]));
-    EXPECT_LT(worst,
-              1e-11);  // mm; a rounding is 2e-15 mm, and grows by 1e3 in five contact durations at most
-    EXPECT_GT(worst, 0);
-  }
-}
-
 TEST(Shares, AreNoMoreThanRunsOfGrains) {
   const Material m;
   const State start = test::squeezed(m, 61, 4, 0.7);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "grainlaw/apps/report/svg.hpp"
@@ -46,6 +47,25 @@ TEST(ReportFigure, AnUndefinedValueBreaksALine) {
   const auto at = html.find("<path stroke='rgb( 18,  52,  86)'");
   ASSERT_NE(at, std::string::npos);
   EXPECT_EQ(occurrences(html.substr(at, html.find("/>", at) - at), "M"), 2u);
+}
+
+TEST(ReportFigure, AShadeReachesDownToTheEdgeOfThePanel) {
+  const Figure figure = figure_with({{"chance", Draw::shade, "#0072b2", {1, 2}, {0.5, 0.5}},
+                                     {"error", Draw::dots, "#0072b2", {1, 2}, {0.1, 1}}});
+  const auto html = draw(figure).str();
+  const auto at = html.find("<polygon fill = 'rgb(  0, 114, 178)' fill-opacity = '0.15");
+  ASSERT_NE(at, std::string::npos);
+  const std::string shape = html.substr(at, html.find("/>", at) - at);
+  const double bottom = figure.panels[0].area.top + figure.panels[0].area.height;
+  double lowest = 0, highest = bottom;  // points are x,y, downwards
+  for (auto comma = shape.find(',', shape.find("points")); comma != std::string::npos;
+       comma = shape.find(',', comma + 1)) {
+    const double y = std::stod(shape.substr(comma + 1));
+    lowest = std::max(lowest, y);
+    highest = std::min(highest, y);
+  }
+  EXPECT_NEAR(lowest, bottom, 0.5);
+  EXPECT_LT(highest, bottom - 50);  // 0.5 of axes that begin below 0.1 and end above 1
 }
 
 TEST(ReportFigure, SaysSoWhereThereIsNothingToDraw) {
