@@ -370,8 +370,8 @@ TEST(MemoryData, TheRateShiftsDensitiesOppositeWays) {
 struct Shift {
   double mean, error;
 };
-Shift minimised_over(const std::string& flow, const std::vector<double>& amplitudes) {
-  const auto still = cycles("minimised"), flowing = cycles(flow);
+Shift minimised_over(const std::string& other, const std::vector<double>& amplitudes) {
+  const auto still = cycles("minimised"), flowing = cycles(other);
   std::vector<double> differences;
   for (const double phi_max : amplitudes) {
     const std::vector<double> a = densities(still, phi_max, 1), b = densities(flowing, phi_max, 1);
@@ -391,6 +391,13 @@ TEST(MemoryData, PhiJByMinimisation) {
   const Shift slow = minimised_over("unloaded-slowly", {0.68, 0.73, 0.82});
   EXPECT_NEAR(slow.mean, 2.8e-4, 5e-6);
   EXPECT_NEAR(slow.error, 1.5e-4, 5e-6);
+  const Shift slowest = minimised_over("unloaded-slowest", {0.68, 0.73});
+  EXPECT_NEAR(slowest.mean, 1.6e-4, 5e-6);
+  EXPECT_NEAR(slowest.error, 1.3e-4, 5e-6);
+  // What a third of the increment changes, and what is left to the slowest flow, are alike.
+  const Shift finer = minimised_over("minimised-finer", {0.68});
+  EXPECT_NEAR(finer.mean, 1.7e-4, 5e-6);
+  EXPECT_NEAR(finer.error, 0.8e-4, 5e-6);
 }
 
 /// The campaigns whose records stand in data/records: their branches again, at the thesis's row ISO.
