@@ -20,8 +20,6 @@ namespace grainlaw::dem {
 
 namespace {
 
-constexpr int moduli_states = 3;
-
 /// Cost of a step at volume fraction nu, between the two nearest trials.
 double step_at(const std::vector<TrialCost>& trials, double nu) {
   const auto above = std::find_if(trials.begin(), trials.end(), [&](const auto& t) { return t.nu >= nu; });
@@ -199,11 +197,7 @@ std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::
     trial.checkpoint();
     if (options.threads > 1) trial.threads(options.threads);
     if (!scene.measure.moduli.empty()) {
-      Trial base(scene.material, flowing.base(), main);
-      for (int k = 0; k < moduli_states; ++k) {
-        base.steps();
-        trial.moduli(base.state(), grains);
-      }
+      trial.moduli(flowing.base(), main, grains);
     }
     trials.push_back(trial.cost());
     try_stages(scene, grains, flowing.base(), place, places, stages);
@@ -283,7 +277,7 @@ SceneCost cost_of(const Scene& scene, const CostOptions& options) {
   cost.checkpoint_bytes = of_all(&TrialCost::checkpoint_bytes);
   cost.moduli = scene.measure.moduli.size();
   for (const TrialCost& trial : path) {
-    cost.moduli_seconds = std::max(cost.moduli_seconds, trial.moduli.seconds / moduli_states);
+    cost.moduli_seconds = std::max(cost.moduli_seconds, trial.moduli.seconds);
     cost.moduli_bytes = std::max(cost.moduli_bytes, trial.moduli.bytes);
   }
   cost.fields = fields_of(per_grain(&TrialCost::engine_bytes), per_grain(&TrialCost::threads_bytes));

@@ -20,6 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double trial_seconds = 0.15;  // of steps, at each density
+constexpr double moduli_seconds = 1;    // at each density, for states and the way from one to the next
+constexpr int fewest_states = 3, most_states = 12;
 constexpr std::uint64_t fewest_steps = 40, fewest_rows = 5, fewest_files = 3;
 
 double step_of(const Material& material, const State& state, const Stage& stage) {
@@ -167,6 +169,21 @@ void Trial::checkpoint() {
   };
   cost_.checkpoint = seconds_of(write, trial_seconds / 10, fewest_files) / grains_;
   cost_.checkpoint_bytes = static_cast<double>(fs::file_size(file)) / grains_;
+}
+
+void Trial::moduli(const State& flowing, const Stage& stage, std::size_t grains) {
+  Trial other(material_, flowing, stage);
+  const double begin = thread_seconds();
+  int states = 0;
+  ModuliCost all;
+  while (states < fewest_states || (states < most_states && thread_seconds() - begin < moduli_seconds)) {
+    seconds_of([&] { other.step(); }, trial_seconds / 10, fewest_steps);
+    const ModuliCost one = moduli_cost(material_, other.dynamics_.state(), grains);
+    all.seconds += one.seconds;
+    all.bytes = std::max(all.bytes, one.bytes);
+    ++states;
+  }
+  cost_.moduli = {all.seconds / states, all.bytes};
 }
 
 }  // namespace grainlaw::dem

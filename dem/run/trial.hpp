@@ -1,7 +1,6 @@
 // A trial of a scene's engine in one packing: what steps, rows, observers and files take on this machine now.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -25,7 +24,7 @@ struct TrialCost {
   double engine_bytes = 0;
   double threads_bytes = 0;  ///< what several threads hold beside that
   double snapshot = 0, checkpoint = 0, checkpoint_bytes = 0;
-  ModuliCost moduli;  ///< of all states tried, not per grain
+  ModuliCost moduli;  ///< of a state, not per grain
 };
 
 class Trial {
@@ -40,10 +39,10 @@ class Trial {
   void threads(int threads);
   void snapshot();
   void checkpoint();
-  /// Of a state of `grains` grains, by a trial on `base`.
-  void moduli(const State& base, std::size_t grains) { cost_.moduli = moduli_cost(material_, base, grains); }
+  /// Of a state of `grains` grains, the mean over some that `flowing` ones go through in `stage`: few take
+  /// much longer than most.
+  void moduli(const State& flowing, const Stage& stage, std::size_t grains);
   const TrialCost& cost() const { return cost_; }
-  State state() const { return dynamics_.state(); }
 
  private:
   template <class Call, class Before>
