@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double trial_seconds = 0.15;  // of steps, at each density
+constexpr double largest_way = 0.01;    // strain of a component
 constexpr double moduli_seconds = 1;    // at each density, for states and the way from one to the next
 constexpr int fewest_states = 3, most_states = 12;
 constexpr std::uint64_t fewest_steps = 40, fewest_rows = 5, fewest_files = 3;
@@ -42,6 +43,14 @@ Mat3 stretch_of(const Leg& leg, const Mat3& gradient, double dt) {
   if (!gradient.is_diagonal()) return apply(spectrum(gradient), grown);
   const Vec3 rate = gradient.diagonal();
   return Mat3::diagonal({grown(rate[0]), grown(rate[1]), grown(rate[2])});
+}
+
+/// How many make this strain; 0 where the box is at rest.
+std::uint64_t steps_of(double strain, const Mat3& gradient, double dt) {
+  double fastest = 0;
+  for (std::size_t k = 0; k < 9; ++k) fastest = std::max(fastest, std::abs(gradient.data()[k]));
+  if (!(fastest > 0)) return 0;
+  return static_cast<std::uint64_t>(std::clamp(strain / (fastest * dt), 1.0, 1e15));
 }
 
 /// Of the text of a table.
@@ -79,9 +88,21 @@ Trial::Trial(const Material& material, const State& state, const Stage& stage)
       heap_before_(heap_bytes()),
       dynamics_(material, state) {
   cost_.nu = state.volume_fraction();
+  steps_a_way_ = steps_of(largest_way, gradient_, dt_);
   dynamics_.start_flow(dt_, gradient_);
   step();
   cost_.engine_bytes = (heap_bytes() - heap_before_) / grains_;
+}
+
+void Trial::step() {
+  if (steps_a_way_ > 0 && steps_gone_ == steps_a_way_) {
+    gradient_ = -1 * gradient_;
+    stretch_ = inverse(stretch_);
+    dynamics_.start_flow(dt_, gradient_);
+    steps_gone_ = 0;
+  }
+  dynamics_.step(stretch_ * dynamics_.cell().edges(), gradient_);
+  ++steps_gone_;
 }
 
 void Trial::steps() {

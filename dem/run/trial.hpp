@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct TrialCost {
 
 class Trial {
  public:
-  /// At the mean rate of `stage` and with its step; where that minimises, with a step of the default.
+  /// At the mean rate of `stage` and with its step; where that minimises, with a step of the default. The box
+  /// is strained to and fro by little, however fast the stage is.
   Trial(const Material& material, const State& state, const Stage& stage);
 
   void steps();
@@ -47,13 +49,15 @@ class Trial {
  private:
   template <class Call, class Before>
   double seconds_between_steps(Call&& call, Before&& before);
-  void step() { dynamics_.step(stretch_ * dynamics_.cell().edges(), gradient_); }
+  void step();
 
   const Material& material_;
   State start_;
   double dt_;
   double grains_;
-  Mat3 gradient_, stretch_;  ///< of a step
+  Mat3 gradient_, stretch_;        ///< of a step
+  std::uint64_t steps_a_way_ = 0;  ///< 0: as many as there are
+  std::uint64_t steps_gone_ = 0;   ///< since it turned round
   double heap_before_;
   Dynamics dynamics_;
   TrialCost cost_;

@@ -77,6 +77,13 @@ TEST(Cost, ModuliCountWithTheRest) {
   EXPECT_EQ(without.moduli_seconds, 0);
 }
 
+/// A trial has more steps than such a leg, and must not strain the box on and on.
+TEST(Cost, OfAFastLegInASmallBox) {
+  const SceneCost cost = cost_of(scene_of(R"({"preparation": {"count": 64, "nu": 0.7},
+    "path": {"segments": [{"mode": "components", "strain": [0.02, 0, 0, 0, 0, 0.02], "rate": 0.01}]}})"));
+  EXPECT_GT(cost.seconds(), 0);
+}
+
 /// Grains once more for each thread, and what lies in their inboxes.
 TEST(Cost, ThreadsHoldGrainsOfTheirOwn) {
   const Scene scene = scene_of(R"({"preparation": {"count": 300, "nu": 0.7},
