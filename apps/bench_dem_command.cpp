@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -25,6 +24,7 @@
 #include "grainlaw/dem/files/snapshot.hpp"
 #include "grainlaw/dem/numbers/simd.hpp"
 #include "grainlaw/dem/record/checkpoint.hpp"
+#include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/scene/provenance.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
@@ -103,12 +103,6 @@ void check_directory(const fs::path& dir, const calibrate::Bench& bench, bool re
                 "holds this bench already; go on with --resume, or give another directory with -o");
 }
 
-double thread_seconds() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// The twins of a packing: one grain of each moved, a different one each time.
 void write_twins(const fs::path& dir, std::int64_t twins) {
   const dem::Frame frame = dem::read_whole_frame(dir / "snapshots.h5", {});
@@ -134,9 +128,9 @@ std::optional<double> seconds_before(const fs::path& dir) {
 calibrate::RunTest timed_test(const calibrate::Bench& bench) {
   return [twins = bench.twins](const dem::Scene& scene, const fs::path& dir, const dem::RunHooks& hooks) {
     const auto before = seconds_before(dir);
-    const double begin = thread_seconds();
+    const double begin = dem::thread_seconds();
     const dem::RunSummary summary = dem::run_element_test(scene, dir, hooks);
-    const double core_s = thread_seconds() - begin;
+    const double core_s = dem::thread_seconds() - begin;
     if (before && (!summary.stopped || dem::has_checkpoint(dir)))
       write_file(dir / calibrate::core_time_file, Json{{"core_s", *before + core_s}}.dump(2) + "\n");
     if (!summary.stopped && std::holds_alternative<dem::NewPacking>(scene.preparation))

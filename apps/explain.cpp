@@ -57,14 +57,15 @@ std::string fields(const SceneCost& cost) {
 
 std::string stages(const SceneCost& cost) {
   std::string text = "stage                      nu                steps       dt (us)   time\n";
-  for (const auto& [stage, range, seconds, tried, bytes] : cost.stages) {
+  for (const auto& [stage, range, passes, seconds, tried, bytes] : cost.stages) {
     const std::string nu = range[0] == range[1] ? fmt::format("{:.4g}", range[0])
                                                 : fmt::format("{:.4g} to {:.4g}", range[0], range[1]);
     text += fmt::format("  {:<24} {:<16} {:>9} {:>12.4g}   {}{}\n", stage.name, nu, stage.stepping.steps,
                         stage.leg.minimises() ? 0 : stage.stepping.dt,
-                        tried || stage.leg.minimises() ? "about "
-                        : stage.leg.drives()           ? ""
-                                                       : "at most ",
+                        tried                   ? "about "
+                        : stage.leg.minimises() ? "not tried, perhaps "
+                        : stage.leg.drives()    ? ""
+                                                : "at most ",
                         short_time(seconds));
     if (bytes > 0) text += fmt::format("  {:<24} and {} of memory meanwhile\n", "", size_text(bytes));
   }

@@ -23,8 +23,9 @@ Range target_range() {
 Range shear_target_range() { return of_k_star(between(-largest_stress, largest_stress)); }
 
 StressTarget read_target(Reader& reader, std::string_view key, const Range& range) {
-  if (reader.raw(key).is_string()) {
-    reader.word(key, {"start"});
+  if (const Json& given = reader.raw(key); given.is_string()) {
+    if (given != "start")
+      reader.fail(key, "must be \"start\" or a number " + range.text() + ", got " + given.dump());
     return {};
   }
   return {reader.number(key, range)};

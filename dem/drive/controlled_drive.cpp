@@ -46,7 +46,7 @@ class ControlledLeg {
     const double own_step = dt_ * control_.speed * control_.servo.throttle;
     const Mat3 rate = box_rate(own_step);
     control_.own_time += own_step;
-    dynamics_.step(stretch(rate) * dynamics_.cell().edges(), rate);
+    dynamics_.step(exponential(dt_ * rate) * dynamics_.cell().edges(), rate);
     ++state_.step;
     control_.looked = state_.step % look_interval == 0;
     if (control_.looked) look(dt_ * static_cast<double>(look_interval));
@@ -107,13 +107,6 @@ class ControlledLeg {
     return matrix_of(rate);
   }
 
-  /// exp(G dt): how the edges go on in a step.
-  Mat3 stretch(const Mat3& rate) const {
-    const auto grown = [this](double x) { return std::exp(x * dt_); };
-    if (!rate.is_diagonal()) return apply(spectrum(rate), grown);
-    return Mat3::diagonal({grown(rate(0, 0)), grown(rate(1, 1)), grown(rate(2, 2))});
-  }
-
   double progress() const {
     if (!leg_.drives()) return 0;
     if (!leg_.to_eps_dev) return leg_.progress(control_.own_time);
@@ -161,7 +154,7 @@ void follow_controlled(Dynamics& dynamics, const Leg& leg, const StepPlan& plan,
 std::string why_lost(const Material& material, const Leg& leg, const LegState& state) {
   const Servo servo(material, leg.control);
   const ServoState& at = state.control.servo;
-  const bool in_this_box = !(at.off > leg.control.servo.wait);
+  const bool box_is_in_the_way = !(at.off > leg.control.servo.wait);
   if (leg.to_eps_dev && state.control.own_time >= leg.duration)
     return "eps_dev never comes to " + to_text(*leg.to_eps_dev);
   if (servo.possible(at) && servo.within_tolerance(at)) return "its strain cannot be reached in this box";
@@ -174,7 +167,7 @@ std::string why_lost(const Material& material, const Leg& leg, const LegState& s
   return name + " cannot be kept at " + short_text(at.target[worst] / unit) + " to " +
          short_text(leg.control.servo.tolerance) + (of_P ? " of P = " + short_text(at.P / unit) : "") +
          ": it is " + short_text(at.reached[worst] / unit) + " after " + short_text(at.off) +
-         " us out of tolerance" + (in_this_box ? ", and the box cannot be strained further" : "");
+         " us out of tolerance" + (box_is_in_the_way ? ", and the box cannot be strained further" : "");
 }
 
 }  // namespace grainlaw::dem

@@ -13,6 +13,8 @@ namespace {
 constexpr double response_over_contact = 5;
 /// Least stiffness that the gain is made for, over k*: grains that hardly touch have none.
 constexpr double least_stiffness = 0.05;
+/// Least pressure that a shear stress is held against, over k*: below, contacts are rounding.
+constexpr double least_pressure = 1e-12;
 /// Stiffness over the bulk modulus K = (1/9V) sum k l^2, of central springs that move affinely and point
 /// everywhere alike: C_ijkl = (1/V) sum k l^2 <n_i n_j n_k n_l> = 9K <n_i n_j n_k n_l>, with <n_x^4> = 1/5
 /// and <n_x^2 n_y^2> = 1/15. The mean stress answers to the same strain of all axes with 3K, a normal stress
@@ -54,14 +56,10 @@ ServoState Servo::start(const Glance& seen) const {
 }
 
 double Servo::error(const ServoState& state, std::size_t target) const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const double wanted = state.target[target], reached = state.reached[target];
-  if (is_shear(targets_[target])) {
-    const double missed = reached - wanted, scale = std::max(state.P, std::abs(wanted));
-    if (scale > 0) return missed / scale;
-    return missed == 0 ? 0 : std::copysign(infinity, missed);
-  }
-  return wanted > 0 ? reached / wanted - 1 : -infinity;
+  if (is_shear(targets_[target]))
+    return (reached - wanted) / std::max({state.P, std::abs(wanted), least_pressure * stress_unit_});
+  return wanted > 0 ? reached / wanted - 1 : -std::numeric_limits<double>::infinity();
 }
 
 std::size_t Servo::worst(const ServoState& state) const {
@@ -96,7 +94,7 @@ void Servo::look(ServoState& state, const Glance& seen, double elapsed, double d
     const double missing = (state.target[i] - state.reached[i]) / stiffness;  // as a strain
     const double wanted = missing / response_ + state.follow[i] * driven * state.throttle;
     state.rate[i] = std::clamp(wanted, -control_.servo.rate, control_.servo.rate);
-    // Critically damped. Nothing is learnt at the limit, nor while the driven axes wait.
+    // Critically damped. Nothing is learnt at the limit, nor while the driven components wait.
     if (state.rate[i] == wanted && granted > 0)
       state.follow[i] += missing * elapsed / (4 * response_ * response_ * granted);
   }

@@ -15,6 +15,7 @@ namespace {
 constexpr double relaxation_share = 0.3;  // of its longest duration that a relaxation takes
 
 constexpr std::uint64_t least_steps_per_row = 2;
+constexpr double looks_per_gamma = 32, most_looks = 100'000;
 
 /// The share of a leg's strain at which a wanted snapshot lies.
 double wanted_progress(const StateRequest& wanted, const Leg& leg, double nu_start) {
@@ -125,14 +126,30 @@ Stage stage_from(const Scene& scene, std::size_t i, const Waypoint& from, const 
   return stage_of_path(scene, scene.path.leg(i, from), i, from.nu_start, longest.path);
 }
 
+namespace {
+
+/// Distance between faces of the box where they are nearest on a leg, mm. A box that glides is narrowest
+/// where its edges lean by half of one, and as wide again where they lean by a whole.
+double narrowest_along(const Drive& drive, const Leg& leg) {
+  double least = Cell(drive.edges(leg.duration)).narrowest();
+  if (!leg.gamma) return least;
+  const double looks = std::min(std::ceil(looks_per_gamma * (1 + std::abs(*leg.gamma))), most_looks);
+  for (double k = 1; k < looks; ++k)
+    least = std::min(least, Cell(drive.edges(leg.time_at(k / looks))).narrowest());
+  return least;
+}
+
+}  // namespace
+
 void check_width(const std::vector<Stage>& stages, const State& start, const Scene& scene) {
   const double widest = 2 * *std::max_element(start.radius.begin(), start.radius.end()),
                least = widest + 0.02 * scene.material.r_mean;
   Mat3 edges = start.box;
   for (const Stage& stage : stages) {
     if (stage.leg.control.by_stress()) return;
-    edges = Drive(edges, stage.leg).edges(stage.leg.duration);
-    const double narrowest = Cell(edges).narrowest();
+    const Drive drive(edges, stage.leg);
+    const double narrowest = narrowest_along(drive, stage.leg);
+    edges = drive.edges(stage.leg.duration);
     if (stage.segment && narrowest < least)
       throw Error(scene.file, "path.segments[" + std::to_string(*stage.segment) + "]",
                   "makes the box " + to_text(narrowest) + " mm wide, too narrow for a grain of diameter " +

@@ -54,4 +54,10 @@ Spectrum spectrum(const Mat3& symmetric) {
   return {a.diagonal(), {axes.column(0), axes.column(1), axes.column(2)}};
 }
 
+Mat3 exponential(const Mat3& a) {
+  const auto exp = [](double x) { return std::exp(x); };
+  if (!a.is_diagonal()) return apply(spectrum(a), exp);
+  return Mat3::diagonal({exp(a(0, 0)), exp(a(1, 1)), exp(a(2, 2))});
+}
+
 }  // namespace grainlaw::dem

@@ -93,4 +93,7 @@ Mat3 apply(const Spectrum& s, F&& f) {
   return sum;
 }
 
+/// exp(A) of a symmetric A; of a diagonal one component by component.
+Mat3 exponential(const Mat3& symmetric);
+
 }  // namespace grainlaw::dem

@@ -15,6 +15,7 @@
 #include "grainlaw/dem/run/leg_trial.hpp"
 #include "grainlaw/dem/run/trial.hpp"
 #include "grainlaw/dem/run/trial_packing.hpp"
+#include "grainlaw/dem/run/watch.hpp"
 
 namespace grainlaw::dem {
 
@@ -104,7 +105,7 @@ std::vector<StageCost> planned(const Scene& scene, const State& start) {
   for (const Stage& stage : stages) {
     const StrainTensor& strain = stage.leg.strain;
     const double after = nu * std::exp(strain[0] + strain[1] + strain[2]);
-    list.push_back({stage, {nu, after}});
+    list.push_back({stage, {nu, after}, static_cast<double>(stage.passes())});
     nu = after;
   }
   return list;
@@ -151,10 +152,13 @@ double nearest(double nu, const std::vector<double>& places) {
                            [nu](double a, double b) { return std::abs(a - nu) < std::abs(b - nu); });
 }
 
-void take(const std::optional<LegCost>& tried, double size, StageCost& cost) {
+/// Of a trial on grains of which the scene has `size` times as many.
+void note(const std::optional<LegCost>& tried, double size, StageCost& cost) {
   if (!tried) return;
+  const double longer = cost.stage.leg.minimises() ? std::pow(size, minimiser_power - 1) : 1;
   cost.tried = true;
-  cost.seconds = size * tried->seconds;
+  cost.seconds = size * longer * tried->seconds;
+  cost.passes = longer * tried->passes;
   cost.bytes = size * tried->bytes;
 }
 
@@ -170,14 +174,14 @@ void try_stages(const Scene& scene, std::size_t grains, const State& flowing, do
     const auto [found, is_new] = known.try_emplace(scene.path.segments[*cost.stage.segment].key);
     std::optional<LegCost>& tried = found->second;
     if (is_new) tried = try_leg(scene.material, flowing, cost.stage, Likeness::density);
-    take(tried, size, cost);
+    note(tried, size, cost);
   }
 }
 
 /// Where the path begins with a snapshot, its first stage is tried from that.
 void try_first_stage(const Scene& scene, const State& start, StageCost& first) {
   if (!first.stage.segment || !needs_trial(first.stage) || start.count() > largest_trial) return;
-  take(try_leg(scene.material, start, first.stage, Likeness::all), 1, first);
+  note(try_leg(scene.material, start, first.stage, Likeness::all), 1, first);
 }
 
 std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::size_t grains,
@@ -224,7 +228,7 @@ double SceneCost::seconds_without_checkpoints() const {
 }
 
 double SceneCost::checkpoints() const {
-  return checkpoint_every > 0 ? std::floor(seconds_without_checkpoints() / checkpoint_every) : 0;
+  return std::floor(seconds_without_checkpoints() / std::max(checkpoint_every, Watch::shortest_interval));
 }
 
 double SceneCost::seconds() const {
@@ -233,8 +237,7 @@ double SceneCost::seconds() const {
 
 double SceneCost::particle_steps() const {
   double sum = 0;
-  for (const StageCost& stage : stages)
-    sum += static_cast<double>(stage.stage.passes()) * static_cast<double>(grains);
+  for (const StageCost& stage : stages) sum += stage.passes * static_cast<double>(grains);
   return sum;
 }
 
@@ -283,10 +286,9 @@ SceneCost cost_of(const Scene& scene, const CostOptions& options) {
   cost.fields = fields_of(per_grain(&TrialCost::engine_bytes), per_grain(&TrialCost::threads_bytes));
   for (StageCost& stage : stages)
     if (!stage.tried)
-      stage.seconds =
-          static_cast<double>(stage.stage.passes()) *
-          (stage.stage.leg.minimises() ? cost.force_seconds
-                                       : grains * mean_step(stage.stage.segment ? path : prepared, stage));
+      stage.seconds = stage.passes * (stage.stage.leg.minimises()
+                                          ? cost.force_seconds
+                                          : grains * mean_step(stage.stage.segment ? path : prepared, stage));
   cost.stages = std::move(stages);
   for (std::size_t k = 0; k < scene.measure.observe.size(); ++k) {
     const std::string& name = scene.measure.observe[k];

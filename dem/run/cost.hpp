@@ -20,6 +20,7 @@ struct FieldCost {
 struct StageCost {
   Stage stage;
   double nu[2];        ///< volume fraction at begin and end
+  double passes = 0;   ///< over the contacts, planned or tried
   double seconds = 0;  ///< without rows; of a relaxation, which may end early, the most
   bool tried = false;  ///< whether a part of it was run (see try_leg), its steps being known only then
   double bytes = 0;    ///< held beside the grains while it lasts

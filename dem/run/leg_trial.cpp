@@ -1,6 +1,10 @@
 #include "grainlaw/dem/run/leg_trial.hpp"
 
-#include <cmath>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 #include <variant>
 
 #include "grainlaw/dem/balance/static_packing.hpp"
@@ -12,6 +16,7 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr double part_seconds = 0.5, warm_up = 0.3, whole_seconds = 1.5;
+constexpr double patience = 2;  // on the wall, over processor time: an increment is not left before
 constexpr std::uint64_t fewest_looks = 20, steps_per_look = 10;
 
 Control kept_at_start(Control control) {
@@ -22,7 +27,7 @@ Control kept_at_start(Control control) {
 }
 
 /// The share of the leg that was done.
-double done(const Stage& stage, const LegState& state) {
+double share_done(const Stage& stage, const LegState& state) {
   if (stage.leg.controlled()) return state.control.progress;
   return static_cast<double>(state.step) / static_cast<double>(stage.stepping.steps);
 }
@@ -32,6 +37,50 @@ double minimiser_bytes(const Material& material, const State& state) {
   StaticPacking packing(material, state);
   packing.find_contacts();
   return heap_bytes() - before;
+}
+
+/// Rings after so many seconds on the wall.
+class Alarm {
+ public:
+  explicit Alarm(double seconds)
+      : thread_([this, seconds] {
+          std::unique_lock lock(mutex_);
+          if (!cancelled_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return done_; }))
+            rung_ = true;
+        }) {}
+  ~Alarm() {
+    {
+      const std::lock_guard lock(mutex_);
+      done_ = true;
+    }
+    cancelled_.notify_one();
+    thread_.join();
+  }
+  Alarm(const Alarm&) = delete;
+  Alarm& operator=(const Alarm&) = delete;
+  const std::atomic<bool>* rung() const { return &rung_; }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable cancelled_;
+  bool done_ = false;
+  std::atomic<bool> rung_ = false;
+  std::thread thread_;
+};
+
+/// How far a trial is.
+struct Mark {
+  double seconds = 0, share = 0, passes = 0;
+};
+
+/// Of the whole leg: what was measured, where it came to its end; else by what it is like beyond the way into
+/// it, if it came so far.
+std::optional<LegCost> whole(const Mark& warm, const Mark& end) {
+  if (end.share >= 1) return LegCost{end.seconds, end.passes, 0};
+  const Mark from = end.share > warm.share ? warm : Mark{};
+  const double part = end.share - from.share;
+  if (!(part > 0)) return std::nullopt;
+  return LegCost{(end.seconds - from.seconds) / part, (end.passes - from.passes) / part, 0};
 }
 
 }  // namespace
@@ -44,23 +93,28 @@ std::optional<LegCost> try_leg(const Material& material, const State& grains, co
   Dynamics dynamics(material, grains);
   LegState state;
   const bool by_increments = stage.leg.minimises();
+  const double budget = like == Likeness::all ? whole_seconds : part_seconds;
   const double begin = thread_seconds();
-  double warm = begin, share_then = 0;  // the way into the leg is not what it is like
+  double passes = 0;
+  const auto mark = [&] { return Mark{thread_seconds() - begin, share_done(stage, state), passes}; };
+  Mark warm;
   const auto go_on = [&](std::uint64_t step) {
+    passes += static_cast<double>(state.passes);
     if (!by_increments && (step % steps_per_look != 0 || step < fewest_looks * steps_per_look)) return true;
-    const double now = thread_seconds();
-    if (warm == begin && now - begin > warm_up * part_seconds) warm = now, share_then = done(stage, state);
-    return now - begin < (like == Likeness::all ? whole_seconds : part_seconds);
+    const Mark now = mark();
+    if (warm.seconds == 0 && now.seconds > warm_up * part_seconds) warm = now;
+    return now.seconds < budget;
   };
   try {
-    drive(dynamics, stage.leg, stage.stepping, state, go_on);
+    const Alarm alarm(patience * budget);
+    drive(dynamics, stage.leg, stage.stepping, state, go_on, alarm.rung());
   } catch (const Error&) {  // an increment that cannot be brought into balance, grains that do not hold
     return std::nullopt;
   }
-  const double end = thread_seconds(), share = done(stage, state);
-  if (!(share > share_then) || (like == Likeness::all && share < 1)) return std::nullopt;
-  LegCost cost{share < 1 ? (end - warm) / (share - share_then) : end - begin, 0};
-  if (by_increments) cost.bytes = minimiser_bytes(material, grains);
+  const Mark end = mark();
+  if (like == Likeness::all && end.share < 1) return std::nullopt;
+  std::optional<LegCost> cost = whole(warm, end);
+  if (cost && by_increments) cost->bytes = minimiser_bytes(material, grains);
   return cost;
 }
 

@@ -15,6 +15,7 @@ inline bool needs_trial(const Stage& stage) { return stage.leg.controlled() || s
 
 struct LegCost {
   double seconds = 0;  ///< of the whole leg, by the part that was run
+  double passes = 0;   ///< over the contacts, likewise
   double bytes = 0;    ///< of a leg that minimises: held beside the grains while it does
 };
 
@@ -27,7 +28,8 @@ enum class Likeness {
 
 /// Runs a stage that needs it for half a second, or, from the grains that it begins with, as a whole if it
 /// takes no more than 1.5 seconds: how a leg begins is not what it is like. None where that tells nothing:
-/// where more time is needed, where the leg only waits for stresses, and where the grains bear none.
+/// where more time is needed (for an increment, too), where the leg only waits for stresses, and where the
+/// grains bear none.
 std::optional<LegCost> try_leg(const Material& material, const State& grains, const Stage& stage,
                                Likeness like);
 

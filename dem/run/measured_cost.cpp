@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ctime>
 #include <fstream>
+#include <limits>
 #include <string>
 
 namespace grainlaw::dem {
@@ -34,15 +35,18 @@ double thread_seconds() {
 
 double heap_bytes() {
   const auto heap = mallinfo2();
+  if (heap.arena == 0) return std::numeric_limits<double>::quiet_NaN();
   return static_cast<double>(heap.uordblks) + static_cast<double>(heap.hblkhd);
 }
 
 double peak_bytes(const std::function<void()>& call) {
   malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5";  // the high water mark begins anew
+  std::ofstream marks("/proc/self/clear_refs");
+  marks << "5" << std::flush;  // the high water mark begins anew
+  const bool begins_anew = marks.good();
   const double before = status_bytes("VmRSS");
   call();
-  return std::max(status_bytes("VmHWM") - before, 0.0);
+  return begins_anew ? std::max(status_bytes("VmHWM") - before, 0.0) : 0;
 }
 
 }  // namespace grainlaw::dem

@@ -23,7 +23,7 @@ double seconds_of(F&& call, double budget, std::uint64_t least) {
   return spent / static_cast<double>(calls);
 }
 
-/// What is allocated, in bytes.
+/// What is allocated, in bytes; NaN where the allocator does not tell, as those of sanitizers.
 double heap_bytes();
 
 /// The most memory that a call holds at one time beyond what is held when it begins, in bytes; 0 where the

@@ -12,7 +12,6 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr StrainTensor axis{-1, 1, 0};  // any: linear response solves for all six strains
-constexpr double power = 1.4;
 
 }  // namespace
 
@@ -27,7 +26,7 @@ ModuliCost moduli_cost(const Material& material, const State& trial, std::size_t
     spent = thread_seconds() - begin;
   });
   const double size = static_cast<double>(grains) / static_cast<double>(trial.count());
-  return {spent * std::pow(size, power), held * size};
+  return {spent * std::pow(size, minimiser_power), held * size};
 }
 
 }  // namespace grainlaw::dem

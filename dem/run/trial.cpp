@@ -1,9 +1,8 @@
 #include "grainlaw/dem/run/trial.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "grainlaw/dem/files/archive.hpp"
@@ -12,6 +11,7 @@
 #include "grainlaw/dem/record/row_writer.hpp"
 #include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/step/forces.hpp"
+#include "grainlaw/element/error.hpp"
 
 namespace grainlaw::dem {
 
@@ -39,10 +39,7 @@ Mat3 mean_gradient(const State& state, const Leg& leg) {
 /// exp(G dt).
 Mat3 stretch_of(const Leg& leg, const Mat3& gradient, double dt) {
   if (leg.gamma) return Mat3::identity() + dt * gradient;  // G G = 0
-  const auto grown = [dt](double rate) { return std::exp(rate * dt); };
-  if (!gradient.is_diagonal()) return apply(spectrum(gradient), grown);
-  const Vec3 rate = gradient.diagonal();
-  return Mat3::diagonal({grown(rate[0]), grown(rate[1]), grown(rate[2])});
+  return exponential(dt * gradient);
 }
 
 /// How many make this strain; 0 where the box is at rest.
@@ -61,8 +58,15 @@ double seconds_per_row(const Record& table) {
 /// A folder of its own among the temporary ones, removed with all that is in it.
 class ScratchFolder {
  public:
-  ScratchFolder() : path_(fs::temp_directory_path() / ("grainlaw-explain-" + std::to_string(::getpid()))) {
-    fs::create_directories(path_);
+  ScratchFolder() {
+    std::error_code error;
+    const fs::path among = fs::temp_directory_path(error);
+    std::string name = (among / "grainlaw-explain-XXXXXX").string();
+    if (error || ::mkdtemp(name.data()) == nullptr)
+      throw Error("TMPDIR", "",
+                  "must be a folder that can be written to, for a trial of snapshots and checkpoints, got " +
+                      (error ? std::string("none") : among.string()));
+    path_ = name;
   }
   ~ScratchFolder() {
     std::error_code ignored;

@@ -19,7 +19,7 @@ constexpr std::uint64_t most_passes = 5000;
 // Packings of up to so many grains are tried as they are; larger ones are made of copies of one of at most
 // base_grains. In copies of few grains lists live too long, the fastest of few being slower than of many; in
 // whole packings of many not long enough, since a trial is less at rest than what it stands for.
-constexpr std::size_t whole_trial = 5000, base_grains = 4000;
+constexpr std::size_t whole_trial = 20'000, base_grains = 10'000;
 
 }  // namespace
 

@@ -26,6 +26,9 @@ struct RunHooks {
 
 class Watch {
  public:
+  /// Of two looks, about, s: checkpoints are no closer.
+  static constexpr double shortest_interval = 0.01;
+
   Watch(const RunHooks& hooks, std::size_t grains);
 
   /// More passes over the contacts to come; a step of dynamics is one.

@@ -158,7 +158,15 @@ void Dynamics::begin_anew(const State& state) {
   team_.reset();
   grains_ = {};
   neighbours_ = Neighbours(material_.r_mean, 0);
-  *this = Dynamics(material_, state, threads_);
+  dt_ = 0;
+  behind_ = false;
+  try {
+    *this = Dynamics(material_, state, threads_);
+  } catch (...) {
+    grains_ = Grains(state, material_.rho);
+    cell_ = Cell(state.box);
+    throw;
+  }
 }
 
 }  // namespace grainlaw::dem

@@ -94,7 +94,8 @@ class Dynamics {
   }
   /// In the order of the State it began with; positions wrapped into the box.
   State state() const;
-  /// As if made of `state`; what it holds is given back before. There is no going on from it if that throws.
+  /// As if made of `state`; what it holds is given back before. Throws as the constructor does: then there is
+  /// no going on from it, but its state is this one.
   void begin_anew(const State& state);
 
  private:

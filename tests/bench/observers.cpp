@@ -25,6 +25,7 @@
 #include "grainlaw/dem/run/element_test.hpp"
 #include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/step/dynamics.hpp"
+#include "grainlaw/element/error.hpp"
 
 namespace {
 
@@ -86,13 +87,13 @@ double seconds_of_kernel(const dem::Scene& test, const fs::path& snapshot) {
 /// Seconds of the bare scene ("bare") or of the kernel's loop ("kernel"), in a process of its own: where
 /// arrays lie depends on what a process did before, and that makes some percent.
 double seconds_apart(const std::string& what, const fs::path& snapshot, double strain) {
-  const std::string command = fs::read_symlink("/proc/self/exe").string() + " --apart " + what + " " +
-                              snapshot.string() + " " + std::to_string(strain);
+  const std::string command = "'" + fs::read_symlink("/proc/self/exe").string() + "' --apart " + what + " '" +
+                              snapshot.string() + "' " + std::to_string(strain);
   std::FILE* const child = ::popen(command.c_str(), "r");
   double seconds = 0;
   const bool told = child != nullptr && std::fscanf(child, "%lf", &seconds) == 1;
   if (child != nullptr) ::pclose(child);
-  if (!told) std::abort();
+  if (!told) throw Error("no answer from: " + command);
   return seconds;
 }
 

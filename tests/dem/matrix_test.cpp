@@ -54,5 +54,21 @@ TEST(Mat3, SpectrumOfASymmetricMatrix) {
               equal_pair * equal_pair, 1e-14);
 }
 
+/// The sum of its series; of a diagonal matrix exp of each value, to the last bit.
+TEST(Mat3, ExponentialOfASymmetricMatrix) {
+  Random random(4);
+  for (int k = 0; k < 100; ++k) {
+    const Mat3 any = test::random_matrix(random, 0.5);
+    const Mat3 a = any + transposed(any);
+    Mat3 sum = Mat3::identity(), term = Mat3::identity();
+    for (int n = 1; n < 40; ++n) {
+      term = (1.0 / n) * (term * a);
+      sum = sum + term;
+    }
+    expect_near(exponential(a), sum, 1e-13);
+  }
+  EXPECT_EQ(exponential(Mat3::diagonal({0.1, -0.2, 0})), Mat3::diagonal({std::exp(0.1), std::exp(-0.2), 1}));
+}
+
 }  // namespace
 }  // namespace grainlaw::dem

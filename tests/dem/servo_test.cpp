@@ -125,6 +125,7 @@ TEST(Servo, ToleranceOfAShearStressIsOfThePressureOrOfItself) {
   EXPECT_NEAR(error(std::nullopt, 0.04, 0.008), -0.05, 1e-12);
   EXPECT_EQ(error(0.0, 0, 0), 0);  // no contacts: no shear stress, either
   EXPECT_EQ(error(0.01, 0, 0), -1);
+  EXPECT_NEAR(error(0.0, 3.3e-16, 1.75e-16), 1.75e-4, 1e-12);  // an unjammed packing's rounding
 }
 
 }  // namespace

@@ -213,7 +213,9 @@ TEST(Path, RefusesStressControlThatMeansNothing) {
             "p.json: segments[0].stress: must be > 0 and <= 1 of k* = k/(2<r>) (at 0 grains have lost their "
             "contacts), got -0.01");
   EXPECT_EQ(refused_segment(R"({"mode": "biaxial", "amount": 0.1, "stress": "hold"})"),
-            "p.json: segments[0].stress: must be one of start, got \"hold\"");
+            "p.json: segments[0].stress: must be \"start\" or a number > 0 and <= 1 of k* = k/(2<r>) (at 0 "
+            "grains have "
+            "lost their contacts), got \"hold\"");
   EXPECT_EQ(
       refused_segment(
           R"({"mode": "control", "x": {"strain": 0.1, "stress": 0.1}, "y": {"strain": 0}, "z": {"strain": 0}})"),
@@ -268,7 +270,8 @@ TEST(Path, RefusesShearControlThatMeansNothing) {
   EXPECT_EQ(refused(R"("xy": {"stress": 2})"),
             "p.json: segments[0].xy.stress: must be >= -1 and <= 1 of k* = k/(2<r>), got 2");
   EXPECT_EQ(refused(R"("xy": {"stress": "hold"})"),
-            "p.json: segments[0].xy.stress: must be one of start, got \"hold\"");
+            "p.json: segments[0].xy.stress: must be \"start\" or a number >= -1 and <= 1 of k* = k/(2<r>), "
+            "got \"hold\"");
   EXPECT_EQ(refused(R"("yz": {"stress": 0, "strain": 0})"),
             "p.json: segments[0].yz: redundant: strain and stress both control this component; give one");
   EXPECT_EQ(refused(R"("xz": {})"), "p.json: segments[0].xz: must give strain or stress");
