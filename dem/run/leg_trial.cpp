@@ -1,8 +1,11 @@
 #include "grainlaw/dem/run/leg_trial.hpp"
 
+#include <pthread.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <ctime>
 #include <mutex>
 #include <thread>
 #include <variant>
@@ -16,7 +19,7 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr double part_seconds = 0.5, warm_up = 0.3, whole_seconds = 1.5;
-constexpr double patience = 2;  // on the wall, over processor time: an increment is not left before
+constexpr std::chrono::milliseconds look_every{20};
 constexpr std::uint64_t fewest_looks = 20, steps_per_look = 10;
 
 Control kept_at_start(Control control) {
@@ -39,15 +42,13 @@ double minimiser_bytes(const Material& material, const State& state) {
   return heap_bytes() - before;
 }
 
-/// Rings after so many seconds on the wall.
+/// Rings when the thread that sets it has spent so many processor seconds.
 class Alarm {
  public:
-  explicit Alarm(double seconds)
-      : thread_([this, seconds] {
-          std::unique_lock lock(mutex_);
-          if (!cancelled_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return done_; }))
-            rung_ = true;
-        }) {}
+  explicit Alarm(double seconds) : end_(thread_seconds() + seconds) {
+    if (::pthread_getcpuclockid(::pthread_self(), &clock_) != 0) throw Error("no clock of this thread");
+    thread_ = std::thread([this] { watch(); });
+  }
   ~Alarm() {
     {
       const std::lock_guard lock(mutex_);
@@ -61,6 +62,17 @@ class Alarm {
   const std::atomic<bool>* rung() const { return &rung_; }
 
  private:
+  void watch() {
+    std::unique_lock lock(mutex_);
+    while (!rung_ && !cancelled_.wait_for(lock, look_every, [this] { return done_; })) {
+      timespec now{};
+      ::clock_gettime(clock_, &now);
+      rung_ = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) > end_;
+    }
+  }
+
+  double end_;
+  ::clockid_t clock_{};
   std::mutex mutex_;
   std::condition_variable cancelled_;
   bool done_ = false;
@@ -106,7 +118,7 @@ std::optional<LegCost> try_leg(const Material& material, const State& grains, co
     return now.seconds < budget;
   };
   try {
-    const Alarm alarm(patience * budget);
+    const Alarm alarm(budget);  // for an increment that takes longer
     drive(dynamics, stage.leg, stage.stepping, state, go_on, alarm.rung());
   } catch (const Error&) {  // an increment that cannot be brought into balance, grains that do not hold
     return std::nullopt;
