@@ -172,6 +172,8 @@ void read_what(Reader& reader, Segment& segment) {
       control.mean = read_target_or_start(reader, "P");
       break;
     case Mode::simple_shear:
+      if (reader.has("controls"))
+        reader.fail("controls", "means nothing in simple_shear; give amount, its gamma");
       segment.amount = reader.number("amount", any_strain);
       if (*segment.amount == 0) reader.fail("amount", "must not be 0");
       return;

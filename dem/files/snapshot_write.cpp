@@ -49,8 +49,16 @@ void attach_integers(hid_t object, const char* name, const std::vector<int>& val
   hdf5::check(H5Awrite(attribute, H5T_NATIVE_INT, values.data()), std::string("attribute ") + name);
 }
 
+/// Of an object that does not say when it was made: what is the same in two files has the same bytes.
+hdf5::Properties timeless(hid_t kind) {
+  hdf5::Properties properties(H5Pcreate(kind), "making properties");
+  hdf5::check(H5Pset_obj_track_times(properties, false), "leaving out times");
+  return properties;
+}
+
 hdf5::Group create_group(hid_t parent, const char* name) {
-  return {H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), std::string("group ") + name};
+  return {H5Gcreate2(parent, name, H5P_DEFAULT, timeless(H5P_GROUP_CREATE), H5P_DEFAULT),
+          std::string("group ") + name};
 }
 
 /// A dataset of this shape; where `frames` is true, of none yet and any number of frames of this shape.
@@ -64,7 +72,7 @@ hdf5::Dataset create_dataset(hid_t parent, const char* name, hid_t type, Shape s
   }
   const int rank = static_cast<int>(shape.size());
   const hdf5::Space space(H5Screate_simple(rank, shape.data(), most.data()), "making a shape");
-  const hdf5::Properties layout(H5Pcreate(H5P_DATASET_CREATE), "making a layout");
+  const hdf5::Properties layout = timeless(H5P_DATASET_CREATE);
   hdf5::check(H5Pset_chunk(layout, rank, chunk.data()), "setting chunks");
   hdf5::check(H5Pset_fletcher32(layout), "setting checksums");
   return {H5Dcreate2(parent, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT),
@@ -190,7 +198,8 @@ SnapshotWriter::SnapshotWriter(std::filesystem::path file, std::vector<double> r
   }
   const hdf5::Session session;
   try {
-    hdf5::File out(H5Fcreate(file_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, file_access()), "creating it");
+    hdf5::File out(H5Fcreate(file_.c_str(), H5F_ACC_TRUNC, timeless(H5P_FILE_CREATE), file_access()),
+                   "creating it");
     write_header(out);
     {
       const auto grains = create_group(create_group(out, "particles"), "grains");

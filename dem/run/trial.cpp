@@ -62,10 +62,12 @@ class ScratchFolder {
     std::error_code error;
     const fs::path among = fs::temp_directory_path(error);
     std::string name = (among / "grainlaw-explain-XXXXXX").string();
-    if (error || ::mkdtemp(name.data()) == nullptr)
+    if (error || ::mkdtemp(name.data()) == nullptr) {
+      const char* const set = std::getenv("TMPDIR");
       throw Error("TMPDIR", "",
                   "must be a folder that can be written to, for a trial of snapshots and checkpoints, got " +
-                      (error ? std::string("none") : among.string()));
+                      (set != nullptr ? std::string(set) : among.string()));
+    }
     path_ = name;
   }
   ~ScratchFolder() {

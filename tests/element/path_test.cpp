@@ -325,7 +325,7 @@ TEST(Path, SimpleShear) {
   EXPECT_EQ(refused_segment(R"({"mode": "simple_shear", "amount": 0})"),
             "p.json: segments[0].amount: must not be 0");
   EXPECT_THAT(refused_segment(R"({"mode": "simple_shear", "controls": {"eps_dev": 0.1}})"),
-              testing::HasSubstr("segments[0].amount"));
+              testing::HasSubstr("segments[0].controls: means nothing in simple_shear; give amount"));
   EXPECT_THAT(refused_segment(R"({"mode": "simple_shear", "amount": 0.1, "profile": "quasistatic"})"),
               testing::HasSubstr("segments[0].profile: must be one of constant, cosine, got"));
 }
