@@ -58,8 +58,9 @@ std::string fields(const SceneCost& cost) {
 std::string stages(const SceneCost& cost) {
   std::string text = "stage                      nu                steps       dt (us)   time\n";
   for (const auto& [stage, range, passes, seconds, tried, bytes] : cost.stages) {
-    const std::string nu = range[0] == range[1] ? fmt::format("{:.4g}", range[0])
-                                                : fmt::format("{:.4g} to {:.4g}", range[0], range[1]);
+    const std::string nu = stage.leg.control.by_stress() ? fmt::format("from {:.4g}", range[0])
+                           : range[0] == range[1]        ? fmt::format("{:.4g}", range[0])
+                                                  : fmt::format("{:.4g} to {:.4g}", range[0], range[1]);
     text += fmt::format("  {:<24} {:<16} {:>9} {:>12.4g}   {}{}\n", stage.name, nu, stage.stepping.steps,
                         stage.leg.minimises() ? 0 : stage.stepping.dt,
                         tried                   ? "about "

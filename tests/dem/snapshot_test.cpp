@@ -197,7 +197,7 @@ haddr_t address_of(hid_t file, const char* name) {
   return info.addr;
 }
 
-/// So that a run that was interrupted leaves the same file as one that was not.
+/// So that equal runs leave equal files.
 TEST_F(SnapshotTest, TheSameFramesAreTheSameBytesWheneverTheyAreWritten) {
   write_frames(file("first.h5"), 20, 2);
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5's times are whole seconds
