@@ -20,9 +20,14 @@ std::string short_time(double seconds) {
 }
 
 std::string size_text(double bytes) {
+  if (std::isnan(bytes)) return "unknown";
   if (bytes < 1e6) return fmt::format("{:.3g} kB", bytes / 1e3);
   if (bytes < 1e9) return fmt::format("{:.3g} MB", bytes / 1e6);
   return fmt::format("{:.3g} GB", bytes / 1e9);
+}
+
+std::string count_text(double bytes) {
+  return std::isnan(bytes) ? std::string("unknown") : fmt::format("{:.0f}", bytes);
 }
 
 std::string terms(const Material& material, const SceneCost& cost) {
@@ -48,10 +53,10 @@ std::string fields(const SceneCost& cost) {
   std::string text = "fields                                     bytes per grain\n";
   double sum = 0;
   for (const auto& field : cost.fields) {
-    text += fmt::format("  {:<44}{:>5.0f}\n", field.name, field.bytes_per_grain);
+    text += fmt::format("  {:<44}{:>5}\n", field.name, count_text(field.bytes_per_grain));
     sum += field.bytes_per_grain;
   }
-  return text + fmt::format("  {:<44}{:>5.0f}, together {}\n\n", "all", sum,
+  return text + fmt::format("  {:<44}{:>5}, together {}\n\n", "all", count_text(sum),
                             size_text(sum * static_cast<double>(cost.grains)));
 }
 
@@ -68,7 +73,7 @@ std::string stages(const SceneCost& cost) {
                         : stage.leg.drives()    ? ""
                                                 : "at most ",
                         short_time(seconds));
-    if (bytes > 0) text += fmt::format("  {:<24} and {} of memory meanwhile\n", "", size_text(bytes));
+    if (bytes != 0) text += fmt::format("  {:<24} and {} of memory meanwhile\n", "", size_text(bytes));
   }
   return text + fmt::format("  a step on the path: {}, of it contact forces {}, motion and lists {}\n\n",
                             short_time(cost.force_seconds + cost.motion_seconds),

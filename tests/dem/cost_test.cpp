@@ -53,7 +53,9 @@ TEST(Cost, OfASceneAgainstItsRun) {
   EXPECT_GE(cost.observers[1].bytes, 15 * 20 * 6 * 8);
   double fields = 0;
   for (const FieldCost& field : cost.fields) fields += field.bytes_per_grain;
-  if (!std::isnan(heap_bytes())) {
+  if (std::isnan(heap_bytes())) {
+    EXPECT_TRUE(std::isnan(cost.bytes())) << cost.bytes();
+  } else {
     EXPECT_NEAR(cost.bytes(), 64 * fields + cost.observers[0].bytes + cost.observers[1].bytes, 1e-6);
   }
 }
@@ -88,12 +90,16 @@ TEST(Cost, OfAFastLegInASmallBox) {
   EXPECT_GT(cost.seconds(), 0);
 }
 
-/// Grains once more for each thread, and what lies in their inboxes.
+/// Grains once more for each thread, and what lies in their inboxes. Where the allocator does not tell what
+/// it holds, memory is unknown, and never said to be less.
 TEST(Cost, ThreadsHoldGrainsOfTheirOwn) {
   const Scene scene = scene_of(R"({"preparation": {"count": 300, "nu": 0.7},
     "path": {"segments": [{"mode": "d2", "amount": 0.001}]}, "measure": {"rows": 1}})");
-  if (std::isnan(heap_bytes())) GTEST_SKIP() << "this allocator does not tell what it holds";
   const double one = cost_of(scene).bytes(), two = cost_of(scene, {2, 60}).bytes();
+  if (std::isnan(heap_bytes())) {
+    EXPECT_TRUE(std::isnan(one) && std::isnan(two)) << one << ' ' << two;
+    return;
+  }
   EXPECT_GT(two - one, 2 * 160 * 300);
   EXPECT_LT(two - one, 2 * 400 * 300);
 }

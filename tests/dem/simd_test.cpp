@@ -148,7 +148,7 @@ TEST(Targets, ScatterAboutOneMean) {
     if ((hwy::SupportedTargets() & target) != 0) others.push_back(target);
   const std::vector<Rows> best = d2_tests(m, start, others.back(), 1, many);
   others.pop_back();
-  if (others.empty()) GTEST_SKIP() << "one instruction set only";
+  if (others.empty()) others.push_back(HWY_SCALAR);  // a machine of one set: further runs on the same
   std::uint64_t seed = 1 + many;
   for (const std::int64_t target : others) {
     const std::vector<Rows> other = d2_tests(m, start, target, seed, few);
