@@ -21,7 +21,7 @@ const Range any_strain = between(-largest_strain, largest_strain), any_rate = ab
             any_duration = above_up_to(0, longest_duration);
 constexpr double default_residual = 1e-6;  // of a packing in balance, over the mean contact force
 constexpr double least_increment = 1e-9, largest_increment = 0.01;
-constexpr double servo_over_rate = 10;  // how much faster than the segment a servo may strain an axis
+constexpr double servo_over_rate = 10;  // how much faster than the segment a servo may strain a component
 constexpr std::array all_modes{
     Mode::iso,     Mode::uni,         Mode::d2,      Mode::d3,       Mode::components,
     Mode::relax,   Mode::constant_p,  Mode::biaxial, Mode::triaxial, Mode::isotropic_stress,
