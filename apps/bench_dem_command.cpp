@@ -156,13 +156,22 @@ std::string value_text(calibrate::Knob knob, double value) {
   return "";
 }
 
-/// What to take: the cheapest setting that chance explains.
-std::string advice(const std::vector<calibrate::BenchError>& errors) {
-  std::string text = "cheapest settings whose error lies within the chaos of the flow:";
-  for (const auto& best : recommend(errors))
-    text += fmt::format("\n  {:28} largest error {:.2g} of the band ({} in {})",
-                        value_text(best.knob, best.value), best.worst, best.quantity, name_of(best.test));
+std::string lines_of(const std::vector<calibrate::Recommendation>& list, const char* measure) {
+  std::string text;
+  for (const auto& best : list)
+    text += fmt::format("\n  {:28} largest error {:.2g} of {} ({} in {})", value_text(best.knob, best.value),
+                        best.worst, measure, best.quantity, name_of(best.test));
   return text;
+}
+
+/// What to take: for one test, and for means over many.
+std::string advice(const std::vector<calibrate::BenchError>& errors) {
+  std::string text;
+  if (const auto list = recommend(errors, calibrate::Judge::one_packing); !list.empty())
+    text = "cheapest settings whose error is less than packings differ, so that one test does not show it:" +
+           lines_of(list, "that") + "\n";
+  return text + "cheapest settings whose error chance explains, for means over many tests:" +
+         lines_of(recommend(errors, calibrate::Judge::chance), "what chance makes");
 }
 
 /// The numbers and pictures of what is on disk.

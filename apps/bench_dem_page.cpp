@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "grainlaw/apps/bench_legend.hpp"
@@ -79,6 +80,24 @@ void add_curves(Panel& panel, const std::vector<BenchError>& errors, BenchTest t
   for (Series* series : {&band, &edge, &line, &dots}) panel.series.push_back(*series);
 }
 
+/// Across the panel, dashed: how far one packing is off the mean of packings, which no setting improves.
+void add_packings(Panel& panel, const std::vector<BenchError>& errors, BenchTest test,
+                  const std::string& quantity, BenchCost cost) {
+  Series line{"one packing among others", Draw::dashes, "#777777", {}, {}};
+  line.in_legend = false;
+  double scatter = std::numeric_limits<double>::quiet_NaN();
+  for (const BenchError& e : errors) {
+    if (e.test != test || e.quantity != quantity || calibrate::compares_packings(e.knob)) continue;
+    if (e.finest && !std::isfinite(scatter)) scatter = e.packings;
+    if (!e.finest) line.x.push_back(cost_of(e, cost));
+  }
+  if (line.x.empty() || !std::isfinite(scatter)) return;
+  const auto [low, high] = std::minmax_element(line.x.begin(), line.x.end());
+  line.x = {*low, *high};
+  line.y = {scatter, scatter};
+  panel.series.push_back(std::move(line));
+}
+
 Markup caption_of(const calibrate::Bench& bench, BenchCost cost) {
   if (cost == BenchCost::particle_steps)
     return "<b>The same over grains times steps</b>"_html +
@@ -90,7 +109,7 @@ Markup caption_of(const calibrate::Bench& bench, BenchCost cost) {
               ", median seconds of a core. Dots: deviation of the mean over runs from that of the finest "
               "setting of the knob, root mean square along the path over that of the quantity. Shaded: what "
               "it would be if chance (the chaos of the flow, or of the packings where these differ) were the "
-              "only difference.");
+              "only difference. Dashed, grey: how far one packing is off the mean of packings.");
 }
 
 Figure figure_of(const calibrate::Bench& bench, const std::vector<BenchError>& errors, BenchCost cost) {
@@ -116,6 +135,7 @@ Figure figure_of(const calibrate::Bench& bench, const std::vector<BenchError>& e
                 {},
                 {}};
     panel.log_x = panel.log_y = true;
+    add_packings(panel, errors, test, quantity, cost);
     for (const Knob knob : calibrate::all_knobs()) add_curves(panel, errors, test, quantity, knob, cost);
     figure.panels.push_back(std::move(panel));
   }
@@ -129,15 +149,17 @@ Markup table_of(const std::vector<BenchError>& errors) {
   table.column("Particle-steps"_html, Table::Kind::figures).column("Core time"_html, Table::Kind::figures);
   table.column("Error"_html, Table::Kind::figures).column("Chance alone"_html, Table::Kind::figures);
   table.column("Offset"_html, Table::Kind::figures).column("Scatter of a run"_html, Table::Kind::figures);
+  table.column("Scatter of packings"_html, Table::Kind::figures);
   std::optional<Knob> group;
   for (const BenchError& e : errors) {
     if (group != e.knob) table.group(text(label_of(e.knob)));
     group = e.knob;
-    const auto share = [&](double x) { return text(e.finest || !std::isfinite(x) ? nothing : percent(x)); };
+    const auto known = [](double x) { return text(std::isfinite(x) ? percent(x) : nothing); };
+    const auto share = [&](double x) { return e.finest ? text(nothing) : known(x); };
     table.row({text(test_name(e.test)), symbol(e.quantity), text(value_of(e)),
                text(number(e.particle_steps, 3)), text(std::isfinite(e.core_s) ? seconds(e.core_s) : nothing),
                e.finest ? "finest"_html : share(e.comparison.error), share(e.comparison.band),
-               share(e.comparison.offset), text(std::isfinite(e.scatter) ? percent(e.scatter) : nothing)});
+               share(e.comparison.offset), known(e.scatter), known(e.packings)});
   }
   return table.html();
 }
@@ -163,7 +185,8 @@ std::string bench_page(const calibrate::Bench& bench, const std::vector<BenchErr
 
 std::string bench_picture(const calibrate::Bench& bench, const std::vector<BenchError>& errors,
                           BenchCost cost) {
-  return drawn_with_legend(figure_of(bench, errors, cost), "shaded: chance alone");
+  return drawn_with_legend(figure_of(bench, errors, cost),
+                           "shaded: chance alone; dashed, grey: one packing among others");
 }
 
 }  // namespace grainlaw::apps

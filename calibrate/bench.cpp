@@ -104,9 +104,6 @@ std::vector<BenchTest> tests_of(Knob knob) {
   return {BenchTest::iso, BenchTest::d2};
 }
 
-/// Whether a knob changes the packing, so that runs cannot start from the same one.
-bool compares_packings(Knob knob) { return knob == Knob::gas_step || knob == Knob::count; }
-
 std::vector<std::vector<std::string>> records_of(const Bench& bench, Knob knob, BenchTest test,
                                                  const BenchSetting& setting) {
   std::vector<std::vector<std::string>> groups;
@@ -229,6 +226,8 @@ const std::vector<Knob>& all_knobs() {
   static const std::vector<Knob> list{Knob::time_step, Knob::rate, Knob::method, Knob::gas_step, Knob::count};
   return list;
 }
+
+bool compares_packings(Knob knob) { return knob == Knob::gas_step || knob == Knob::count; }
 
 std::string name_of(BenchTest test) {
   switch (test) {

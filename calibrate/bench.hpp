@@ -17,6 +17,8 @@ namespace grainlaw::calibrate {
 enum class Knob { time_step, rate, method, gas_step, count };
 std::string name_of(Knob knob);  ///< "time_step", …
 const std::vector<Knob>& all_knobs();
+/// Whether a knob changes the packing, so that runs cannot start from the same one.
+bool compares_packings(Knob knob);
 
 /// The tests: D2 and an isotropic unloading from one relaxed packing at nu_start; for the step of the gas,
 /// the way to that packing.

@@ -131,9 +131,13 @@ void add_errors(const Sweep& sweep, const RunFolder& folder, std::vector<BenchEr
       BenchError line{sweep.knob,  sweep.test, variants[i]->value,
                       quantity,    cost.runs,  cost.particle_steps,
                       cost.core_s, {},         0,
-                      finest};
+                      0,           finest};
       if (!finest) line.comparison = compare(columns[i], columns.back(), variance);
-      line.scatter = root_mean_square(variance) / size_of(columns.back());
+      const double size = size_of(columns.back());
+      line.scatter = root_mean_square(variance) / size;
+      line.packings = compares_packings(sweep.knob)
+                          ? line.scatter
+                          : root_mean_square(variance_over_groups(columns[i])) / size;
       errors.push_back(line);
     }
   }
@@ -146,9 +150,18 @@ std::string number(double x) {
   return text;
 }
 
-/// Whether chance explains the error, or it is too small to matter.
-bool within_band(const BenchError& line) {
-  return line.comparison.error <= std::max(most_bands * line.comparison.band, negligible_error);
+double measure_of(const BenchError& line, Judge judge) {
+  return judge == Judge::chance ? line.comparison.band : line.packings;
+}
+
+/// Another method has a limit of its own, and fewer grains scatter more.
+bool judged(Knob knob, Judge judge) {
+  return knob != Knob::method && (knob != Knob::count || judge == Judge::chance);
+}
+
+bool good_enough(const BenchError& line, Judge judge) {
+  const double granted = (judge == Judge::chance ? most_bands : 1) * measure_of(line, judge);
+  return line.finest || line.comparison.error <= negligible_error || line.comparison.error <= granted;
 }
 
 }  // namespace
@@ -192,27 +205,38 @@ Series pooled_variance(const std::vector<const Groups*>& sets) {
   return sum;
 }
 
+Series variance_over_groups(const Groups& groups) {
+  std::vector<Series> means;
+  for (const auto& runs : groups) means.push_back(mean_of(runs));
+  const Groups one{means};
+  const Series between = pooled_variance({&one}), within = pooled_variance({&groups});
+  const double share = mean_share(groups) * static_cast<double>(groups.size());  // of `within`, in `between`
+  Series sum(between.size());
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = between[i] + (1 - share) * within.at(i);
+  return sum;
+}
+
 std::vector<BenchError> bench_errors(const Bench& bench, const RunFolder& folder) {
   std::vector<BenchError> errors;
   for (const Sweep& sweep : sweeps(bench)) add_errors(sweep, folder, errors);
   return errors;
 }
 
-std::vector<Recommendation> recommend(const std::vector<BenchError>& errors) {
+std::vector<Recommendation> recommend(const std::vector<BenchError>& errors, Judge judge) {
   struct Candidate {
     double cost = 0;
     bool good = true;
     const BenchError* worst = nullptr;
   };
-  const auto ratio = [](const BenchError& line) {
+  const auto ratio = [judge](const BenchError& line) {
     const bool matters = !line.finest && line.comparison.error > negligible_error;
-    return matters ? line.comparison.error / line.comparison.band : 0;
+    return matters ? line.comparison.error / measure_of(line, judge) : 0;
   };
   std::map<Knob, std::map<double, Candidate>> knobs;
   for (const BenchError& line : errors) {
     Candidate& candidate = knobs[line.knob][line.value];
     candidate.cost += line.particle_steps;
-    if (!line.finest) candidate.good = candidate.good && within_band(line);
+    candidate.good = candidate.good && good_enough(line, judge) && !std::isnan(measure_of(line, judge));
     if (candidate.worst == nullptr || ratio(line) > ratio(*candidate.worst)) candidate.worst = &line;
   }
   std::vector<Recommendation> list;
@@ -220,21 +244,22 @@ std::vector<Recommendation> recommend(const std::vector<BenchError>& errors) {
     const Candidate* best = nullptr;
     for (const auto& [value, candidate] : candidates)
       if (candidate.good && (best == nullptr || candidate.cost < best->cost)) best = &candidate;
-    if (best == nullptr || knob == Knob::method) continue;  // another method has a limit of its own
+    if (best == nullptr || !judged(knob, judge)) continue;
     list.push_back({knob, best->worst->value, ratio(*best->worst), best->worst->test, best->worst->quantity});
   }
   return list;
 }
 
 std::string to_csv(const std::vector<BenchError>& errors) {
-  std::string text = "knob,value,test,quantity,runs,particle_steps,core_s,error,band,offset,scatter\n";
+  std::string text =
+      "knob,value,test,quantity,runs,particle_steps,core_s,error,band,offset,scatter,packings\n";
   for (const BenchError& line : errors) {
     text += name_of(line.knob) + "," + number(line.value) + "," + name_of(line.test) + "," + line.quantity +
             "," + std::to_string(line.runs);
     const Comparison& c = line.comparison;
     const double none = line.finest ? undefined : 1;  // the finest is not compared with itself
-    for (const double x :
-         {line.particle_steps, line.core_s, none * c.error, none * c.band, none * c.offset, line.scatter})
+    for (const double x : {line.particle_steps, line.core_s, none * c.error, none * c.band, none * c.offset,
+                           line.scatter, line.packings})
       text += "," + number(x);
     text += "\n";
   }
@@ -255,6 +280,7 @@ Json to_json(const std::vector<BenchError>& errors) {
       entry["offset"] = or_null(line.comparison.offset);
     }
     entry["scatter"] = or_null(line.scatter);
+    entry["packings"] = or_null(line.packings);
     list.push_back(std::move(entry));
   }
   return list;

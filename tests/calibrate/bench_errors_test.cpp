@@ -65,6 +65,29 @@ TEST(BenchErrors, ChanceAloneMakesAnErrorAsLargeAsTheBand) {
   EXPECT_NEAR(c.band, 0.1 * std::sqrt(1.0 / 6 + 1.0 / 6), 0.005);
 }
 
+TEST(BenchErrors, ARunScattersAboutAllPackingsByBothVariances) {
+  const Groups two{{{1}, {3}}, {{11}, {13}}};  // means 2 and 12: 50 between them; 2 within
+  EXPECT_NEAR(variance_over_groups(two)[0], 50 + 0.5 * 2, 1e-12);
+  const Groups one{{{1}, {3}}};
+  EXPECT_TRUE(std::isnan(variance_over_groups(one)[0]));
+}
+
+TEST(BenchErrors, ScatterOverPackingsIsThatOfTheNoiseItIsMadeOf) {
+  std::mt19937 generator(2);
+  std::normal_distribution<double> packing(0, 0.3);
+  Groups all = noise(generator, 40, 2);
+  for (auto& group : all)
+    for (std::size_t i = 0; i < 400; ++i) {
+      const double shift = packing(generator);
+      for (Series& run : group) run[i] += shift;
+    }
+  const Series variance = variance_over_groups(all);
+  double mean = 0;
+  for (const double x : variance) mean += x / 400;
+  // 39 degrees of freedom in each of 400 rows: the mean scatters by sqrt(2/39/400) = 1.1 %.
+  EXPECT_NEAR(mean, 0.3 * 0.3 + 0.1 * 0.1, 0.04 * 0.1);
+}
+
 BenchError line(Knob knob, double value, double cost, double error, bool finest = false) {
   BenchError e{};
   e.knob = knob;
@@ -78,7 +101,8 @@ BenchError line(Knob knob, double value, double cost, double error, bool finest 
 
 TEST(BenchErrors, RecommendsTheCheapestWithinTwoBands) {
   const auto best = recommend({line(Knob::time_step, 5, 1, 0.03), line(Knob::time_step, 10, 2, 0.019),
-                               line(Knob::time_step, 20, 4, 0.01), line(Knob::time_step, 200, 40, 0, true)});
+                               line(Knob::time_step, 20, 4, 0.01), line(Knob::time_step, 200, 40, 0, true)},
+                              Judge::chance);
   ASSERT_EQ(best.size(), 1u);
   EXPECT_EQ(best[0].value, 10);
   EXPECT_NEAR(best[0].worst, 1.9, 1e-12);
@@ -87,7 +111,7 @@ TEST(BenchErrors, RecommendsTheCheapestWithinTwoBands) {
 TEST(BenchErrors, AnErrorBelowAThousandthIsGoodEnough) {
   auto quiet = line(Knob::time_step, 5, 1, 9e-4);
   quiet.comparison.band = 1e-9;
-  const auto best = recommend({quiet, line(Knob::time_step, 200, 40, 0, true)});
+  const auto best = recommend({quiet, line(Knob::time_step, 200, 40, 0, true)}, Judge::chance);
   ASSERT_EQ(best.size(), 1u);
   EXPECT_EQ(best[0].value, 5);
 }
@@ -95,10 +119,31 @@ TEST(BenchErrors, AnErrorBelowAThousandthIsGoodEnough) {
 TEST(BenchErrors, OneBadQuantityIsEnough) {
   auto bad = line(Knob::rate, 3, 1, 0.05);
   bad.quantity = "F_dev";
-  const auto best = recommend({line(Knob::rate, 3, 1, 0.001), bad, line(Knob::rate, 1, 3, 0.002),
-                               line(Knob::rate, 0.1, 30, 0, true)});
+  const auto best = recommend(
+      {line(Knob::rate, 3, 1, 0.001), bad, line(Knob::rate, 1, 3, 0.002), line(Knob::rate, 0.1, 30, 0, true)},
+      Judge::chance);
   ASSERT_EQ(best.size(), 1u);
   EXPECT_EQ(best[0].value, 1);
+}
+
+TEST(BenchErrors, FewerGrainsAreNotRecommendedForScatteringMore) {
+  std::vector<BenchError> lines{line(Knob::count, 250, 1, 0.015), line(Knob::count, 4000, 16, 0, true)};
+  for (BenchError& e : lines) e.packings = 0.05;
+  EXPECT_TRUE(recommend(lines, Judge::one_packing).empty());
+  EXPECT_EQ(recommend(lines, Judge::chance).at(0).value, 250);
+}
+
+TEST(BenchErrors, OneTestIsHeldAgainstTheScatterOfPackings) {
+  std::vector<BenchError> lines{line(Knob::rate, 3, 1, 0.06), line(Knob::rate, 1, 3, 0.04),
+                                line(Knob::rate, 0.3, 10, 0.01), line(Knob::rate, 0.1, 30, 0, true)};
+  for (BenchError& e : lines) e.packings = 0.05;
+  const auto best = recommend(lines, Judge::one_packing);
+  ASSERT_EQ(best.size(), 1u);
+  EXPECT_EQ(best[0].value, 1);
+  EXPECT_NEAR(best[0].worst, 0.8, 1e-12);
+  EXPECT_EQ(recommend(lines, Judge::chance).at(0).value, 0.3);  // within two bands of 0.01
+  for (BenchError& e : lines) e.packings = std::nan("");        // of one packing nothing is known
+  EXPECT_TRUE(recommend(lines, Judge::one_packing).empty());
 }
 
 class BenchFolder : public testing::Test {
