@@ -138,6 +138,7 @@ void ElementTest::plan_again() {
   Waypoint from(place_.nu_start);
   from.move({third, third, third}, {});
   from.eps_dev = place_.leg.eps_dev;
+  from.gamma = place_.leg.gamma;
   if (place_.leg.axis != StrainTensor{}) from.axis = place_.leg.axis;
   stage = stage_from(scene_, *stage.segment, from, longest_);
   if (place_.leg.step == 0) check_width({stage}, dynamics_.state(), scene_);
@@ -186,6 +187,8 @@ void ElementTest::leave_leg() {
   next.eps_vol = leg.eps_vol[1];
   next.eps_dev = leg.eps_dev[1];
   next.axis = leg.axis.value_or(place_.leg.axis);
+  const bool sheared = leg.axis || leg.control.by_stress();
+  next.gamma = leg.gamma ? leg.gamma_before + *leg.gamma : sheared ? 0 : place_.leg.gamma;
   if (leg.controlled()) {
     const StrainTensor strain = leg_strain(dynamics_, place_.leg);
     next.eps_vol = leg.eps_vol[0] + strain[0] + strain[1] + strain[2];
