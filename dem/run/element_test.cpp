@@ -202,8 +202,8 @@ void ElementTest::leave_leg() {
 /// Ends the test on a leg that cannot go on.
 void ElementTest::cut_short(const std::string& why) {
   const Stage& stage = stages_[place_.stage];
-  cut_short_ = "segment " + std::to_string(*stage.segment) + " (" + name_of(stage.leg.mode) + "): " + why +
-               "; the test ends there";
+  const Error error(scene_.file, scene_.path.segments.at(*stage.segment).key, why);
+  cut_short_ = std::string(error.what()) + "; the test ends there";
   place_.stage = stages_.size();
 }
 
