@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "grainlaw/dem/drive/controlled_drive.hpp"
@@ -21,8 +20,8 @@ namespace {
 constexpr double relaxation_share = 0.3;  // of its longest duration that a relaxation takes
 
 constexpr std::uint64_t least_steps_per_row = 2;
-constexpr double looks_per_strain = 32, most_looks = 100'000;
-constexpr double largest_skew = 67'108'864;  // 2^26: half of the bits of a number
+constexpr double coarse_look = 1.0 / 32, fine_look = 1e-6;  // strain between looks at the width of a box
+constexpr double largest_skew = 67'108'864;                 // 2^26: half of the bits of a number
 
 /// The share of a leg's strain at which a wanted snapshot lies.
 double wanted_progress(const StateRequest& wanted, const Leg& leg, double nu_start) {
@@ -164,27 +163,45 @@ class KnownBox {
     return !(open_[0] && open_[1] && open_[2]);
   }
 
-  /// Distance between faces of the box where they are nearest on the leg, mm; none where the numbers of its
-  /// edges no longer hold the box. A box that glides is narrowest where its edges lean by half of one, and as
-  /// wide again where they lean by a whole; one that is tilted otherwise may be narrow between its ends, too.
-  std::optional<double> narrowest_on_leg() const {
+  /// Distance between faces of the box where they are nearest on the leg, mm, as far as that is less than
+  /// `least` or not; none where the numbers of its edges no longer hold the box. A box that glides is
+  /// narrowest where its edges lean by half of one, and as wide again where they lean by a whole; one that is
+  /// tilted otherwise may be narrow between its ends, too.
+  std::optional<double> narrowest_on_leg(double least) const {
     const Drive drive(edges_, known_);
-    const double size = known_.gamma ? std::abs(*known_.gamma) : largest_component(known_.strain);
-    const bool monotone = !known_.gamma && edges_.is_diagonal() && drive.edges(known_.duration).is_diagonal();
-    const double looks = monotone ? 1 : std::clamp(std::ceil(looks_per_strain * size), 1.0, most_looks);
-    double least = std::numeric_limits<double>::infinity();
-    for (double k = 1; k <= looks; ++k) {
-      const Mat3 edges = drive.edges(k < looks ? known_.time_at(k / looks) : known_.duration);
-      if (!holds(edges)) return std::nullopt;
-      least = std::min(least, Cell(edges).narrowest());
-    }
-    return least;
+    const Mat3 end = drive.edges(known_.duration);
+    if (!holds(edges_) || !holds(end)) return std::nullopt;
+    const double first = Cell(edges_).narrowest(), last = Cell(end).narrowest();
+    if (!known_.gamma && edges_.is_diagonal() && end.is_diagonal()) return last;
+    return narrowest_between(drive, least, {0, first}, {1, last});
   }
 
   void leave() { edges_ = Drive(edges_, known_).edges(known_.duration); }
 
  private:
   static constexpr double far = 1e9;  // mm
+
+  struct Look {
+    double share, narrowest;  ///< of the leg's strain; mm
+  };
+
+  /// No distance between planes of a lattice changes faster than by exp of the strain, so that between two
+  /// looks it cannot fall below exp(-strain/2) of the less.
+  double narrowest_between(const Drive& drive, double least, const Look& a, const Look& b) const {
+    const double strain = (b.share - a.share) * size(), seen = std::min(a.narrowest, b.narrowest);
+    const bool fine_enough = strain < (seen < least ? coarse_look : fine_look);
+    if (fine_enough || seen * std::exp(-0.5 * strain) >= least) return seen;
+    const double share = 0.5 * (a.share + b.share);
+    const Look middle{share, Cell(drive.edges(known_.time_at(share))).narrowest()};
+    return std::min(narrowest_between(drive, least, a, middle), narrowest_between(drive, least, middle, b));
+  }
+
+  /// At least the largest principal strain of the leg.
+  double size() const {
+    double squares = 0;
+    for (std::size_t c = 0; c < 6; ++c) squares += (c < 3 ? 1 : 2) * known_.strain[c] * known_.strain[c];
+    return known_.gamma ? std::abs(*known_.gamma) : std::sqrt(squares);
+  }
 
   /// Whether edge c is at a right angle to the others and stays so.
   bool is_alone(std::size_t c) const {
@@ -208,7 +225,7 @@ void check_width(const std::vector<Stage>& stages, const State& start, const Sce
   KnownBox box(start.box);
   for (const Stage& stage : stages) {
     if (!box.enter(stage.leg)) return;
-    const std::optional<double> narrowest = box.narrowest_on_leg();
+    const std::optional<double> narrowest = box.narrowest_on_leg(least);
     const auto refuse = [&](const std::string& why) {
       throw Error(scene.file, stage.segment ? scene.path.segments.at(*stage.segment).key : "preparation",
                   why);

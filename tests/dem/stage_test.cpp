@@ -117,6 +117,26 @@ TEST(Stage, RefusesABoxThatIsNarrowOnlyOnItsWay) {
   EXPECT_EQ(refused(segment, 200), "accepted");
 }
 
+/// At gamma = 1/2 the faces of a cube are 1/sqrt(1.25) of its edge apart, and nowhere nearer.
+TEST(Stage, FindsTheNarrowestPlaceOfABoxThatGlides) {
+  const State start = gas(20);
+  const double largest = *std::max_element(start.radius.begin(), start.radius.end()),
+               least = 2 * largest + 0.02, volume = start.volume_fraction() * determinant(start.box) / 0.7;
+  for (const double times : {1 - 1e-4, 1 + 1e-4}) {
+    // A square of that edge in x and y, as long as it must be in z; a first leg of 1/64, so that no half lies
+    // at 1/2.
+    const double edge = std::sqrt(1.25) * least * times, e = std::log(std::cbrt(volume) / edge);
+    const std::string said =
+        refused(components({e, e, -2 * e}) + R"(, {"mode": "simple_shear", "amount": 0.015625},
+                                     {"mode": "simple_shear", "amount": 0.93})",
+                20);
+    if (times < 1)
+      EXPECT_THAT(said, testing::StartsWith("scene.json: path.segments[2]: makes the box"));
+    else
+      EXPECT_EQ(said, "accepted");
+  }
+}
+
 TEST(Stage, RefusesAPrescribedAxisThatBecomesTooShortUnderStress) {
   const auto control = [](const std::string& x, const std::string& y, const std::string& z,
                           const std::string& more) {
