@@ -14,10 +14,6 @@ Vec3 scaled(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
 
 Vec3 difference(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 /// Takes whole multiples of column k off column c, so that entry (k, c) is at most half of (k, k).
 void shorten_tilt(Mat3& edges, std::size_t k, std::size_t c) {
   const double n = std::round(edges(k, c) / edges(k, k));
@@ -51,7 +47,8 @@ LammpsBox::LammpsBox(const Mat3& box) {
   const Vec3 a = shortest.column(0), b = shortest.column(1), c = shortest.column(2);
   const Vec3 x = scaled(1 / norm(a), a);
   const Vec3 across = difference(b, scaled(dot(b, x), x));
-  const Vec3 y = scaled(1 / norm(across), across), z = cross(x, y);
+  const Vec3 y = scaled(1 / norm(across), across);
+  const Vec3 normal = inverse(shortest).row(2), z = scaled(1 / norm(normal), normal);  // of both a and b
   turn = {x, y, z};
   edges = {{norm(a), dot(b, x), dot(c, x)}, {0, norm(across), dot(c, y)}, {0, 0, dot(c, z)}};
   shorten_tilt(edges, 1, 2);
