@@ -12,6 +12,12 @@ namespace {
 
 Vec3 scaled(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
 
+/// Along a, of length 1: to the last bit where a is along an axis.
+Vec3 direction(const Vec3& a) {
+  const double length = norm(a);
+  return {a[0] / length + 0.0, a[1] / length + 0.0, a[2] / length + 0.0};  // 0 rather than -0
+}
+
 Vec3 difference(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 /// Takes whole multiples of column k off column c, so that entry (k, c) is at most half of (k, k).
@@ -45,10 +51,9 @@ LammpsBox::LammpsBox(const Mat3& box) {
   const Cell cell(box);
   const Mat3 shortest = box * cell.basis();
   const Vec3 a = shortest.column(0), b = shortest.column(1), c = shortest.column(2);
-  const Vec3 x = scaled(1 / norm(a), a);
+  const Vec3 x = direction(a);
   const Vec3 across = difference(b, scaled(dot(b, x), x));
-  const Vec3 y = scaled(1 / norm(across), across);
-  const Vec3 normal = inverse(shortest).row(2), z = scaled(1 / norm(normal), normal);  // of both a and b
+  const Vec3 y = direction(across), z = direction(inverse(shortest).row(2));  // z across a and b
   turn = {x, y, z};
   edges = {{norm(a), dot(b, x), dot(c, x)}, {0, norm(across), dot(c, y)}, {0, 0, dot(c, z)}};
   shorten_tilt(edges, 1, 2);
