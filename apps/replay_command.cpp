@@ -6,6 +6,7 @@
 
 #include "grainlaw/apps/commands.hpp"
 #include "grainlaw/apps/terminal.hpp"
+#include "grainlaw/element/components.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/model/c/replay.hpp"
 #include "grainlaw/model/c/state_table.hpp"
@@ -31,11 +32,10 @@ int run(const std::string& file) {
   for (std::size_t i = 1; i < model::state_length; ++i)
     terminal.say(
         fmt::format("{:<12} {:<24} {}", model::state_names[i], to_text(before[i]), to_text(after[i])));
-  constexpr const char* components[]{"xx", "yy", "zz", "yz", "xz", "xy"};
   for (std::size_t i = 0; i < 6; ++i)
-    terminal.say(fmt::format("{:<12} {:<24} {}", fmt::format("strain {}", components[i]),
+    terminal.say(fmt::format("{:<12} {:<24} {}", fmt::format("strain {}", tensor_components[i]),
                              to_text(kept.increment[i]),
-                             fmt::format("stress {} {}", components[i], to_text(now.stress[i]))));
+                             fmt::format("stress {} {}", tensor_components[i], to_text(now.stress[i]))));
   return now.status.failed() ? failed : all_well;
 }
 

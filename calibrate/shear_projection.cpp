@@ -1,17 +1,14 @@
 #include "grainlaw/calibrate/shear_projection.hpp"
 
-#include <array>
 #include <cmath>
+
+#include "grainlaw/element/components.hpp"
 
 namespace grainlaw::calibrate {
 namespace {
 
-using Components = std::array<const char*, 6>;
-constexpr Components stress{"sxx", "syy", "szz", "syz", "sxz", "sxy"},
-    fabric{"Fxx", "Fyy", "Fzz", "Fyz", "Fxz", "Fxy"};
-
 /// Every component that counts is there.
-bool has_all(const Record& rows, const Components& names, const StrainTensor& along) {
+bool has_all(const Record& rows, const ComponentNames& names, const StrainTensor& along) {
   for (std::size_t k = 0; k < names.size(); ++k)
     if (along[k] != 0 && !rows.has(names[k])) return false;
   return true;
@@ -36,7 +33,7 @@ ShearColumn shear_column(const TestRecord& test, std::size_t leg, const std::str
 
 ShearColumn shear_column(const TestRecord& test, const StrainTensor& axis, const std::string& quantity) {
   const bool of_stress = quantity == "s_dev";
-  const Components& names = of_stress ? stress : fabric;
+  const ComponentNames& names = of_stress ? stress_columns : fabric_columns;
   const StrainTensor along = projector(axis);
   if (!has_all(test.rows, names, along)) return {test.rows[quantity], false};
   ShearColumn column{std::vector<double>(test.rows.rows(), 0.0), true};

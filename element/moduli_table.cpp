@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "grainlaw/element/components.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw {
 
 namespace {
 
-constexpr std::array components{"xx", "yy", "zz", "yz", "xz", "xy"};
 constexpr std::array axes{"x", "y", "z"};
 
 /// What a fit cannot do without.
@@ -30,17 +30,19 @@ std::vector<std::string> young_columns() {
 
 std::vector<std::string> wave_columns() {
   std::vector<std::string> list;
-  for (const char* ray : {"x", "y", "z", "yz", "xz", "xy", "xyz"})
-    for (const char* k : {"1", "2", "3"}) list.push_back(std::string("speed_") + ray + "_" + k);
+  std::vector<std::string> rays(control_keys.begin(), control_keys.end());
+  rays.emplace_back("xyz");
+  for (const std::string& ray : rays)
+    for (const char* k : {"1", "2", "3"}) list.push_back("speed_" + ray + "_" + k);
   return list;
 }
 
 /// Stress in balance, and its 36 derivatives, which have no symmetry.
-std::vector<std::string> stress_columns() {
+std::vector<std::string> columns_of_stress() {
   std::vector<std::string> list;
-  for (const char* a : components) list.push_back(std::string("sigma_") + a);
-  for (const char* a : components)
-    for (const char* b : components) list.push_back(std::string("S_") + a + "_" + b);
+  for (const char* a : tensor_components) list.push_back(std::string("sigma_") + a);
+  for (const char* a : tensor_components)
+    for (const char* b : tensor_components) list.push_back(std::string("S_") + a + "_" + b);
   return list;
 }
 
@@ -80,9 +82,9 @@ const std::vector<std::string>& moduli_columns() {
         "file",  "frame",  "segment", "eps_dev",          "nu",       "P",        "sigma_dev", "F_v",
         "F_dev", "C_star", "f_NR",    "backbone",         "contacts", "residual", "amplitude", "B",
         "A1",    "A2",     "G_oct",   "contacts_changed", "unstable"};
-    for (std::size_t a = 0; a < components.size(); ++a)
-      for (std::size_t b = a; b < components.size(); ++b)
-        all.push_back(std::string("E_") + components[a] + "_" + components[b]);
+    for (std::size_t a = 0; a < tensor_components.size(); ++a)
+      for (std::size_t b = a; b < tensor_components.size(); ++b)
+        all.push_back(std::string("E_") + tensor_components[a] + "_" + tensor_components[b]);
     return all;
   }();
   return names;
@@ -107,7 +109,7 @@ const std::vector<ElasticGroup>& elastic_groups() {
       {"floppy", {"floppy"}},
       {"invariants", {"sigma_dev_inv", "F_dev_inv", "A2_inv", "G_oct_inv"}},
       {"affine", {"B_affine", "A1_affine", "A2_affine", "G_oct_affine"}},
-      {"stress", stress_columns()}};
+      {"stress", columns_of_stress()}};
   return groups;
 }
 

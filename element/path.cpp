@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "grainlaw/element/components.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/jacobi.hpp"
 #include "grainlaw/element/path_limits.hpp"
+#include "grainlaw/element/short_text.hpp"
 
 namespace grainlaw {
 
@@ -99,11 +103,17 @@ StrainTensor strain_of(const Segment& segment, const Waypoint& at) {
   return {};
 }
 
-/// The mode's own strain (the number `rate` multiplies): the largest component.
-double largest(const StrainTensor& e) {
-  double most = 0;
-  for (const double component : e) most = std::max(most, std::abs(component));
-  return most;
+/// sqrt(3 J2) of the strain of a whole simple shear, with the sign of gamma.
+double eps_dev_of_simple_shear(double gamma) { return std::numbers::sqrt3 * std::asinh(0.5 * gamma); }
+
+/// By how much the principal values differ.
+double spread(const StrainTensor& e) {
+  std::array<std::array<double, 3>, 3> m{{{e[0], e[5], e[4]}, {e[5], e[1], e[3]}, {e[4], e[3], e[2]}}};
+  for (int sweep = 0; sweep < 10; ++sweep)
+    for (std::size_t p = 0; p < 3; ++p)
+      for (std::size_t q = p + 1; q < 3; ++q) jacobi_rotation(m, p, q);
+  const auto [least, most] = std::minmax({m[0][0], m[1][1], m[2][2]});
+  return most - least;
 }
 
 }  // namespace
@@ -135,20 +145,33 @@ double Leg::time_at(double f) const {
 
 double Leg::eps_dev_at(double f) const {
   if (!gamma) return eps_dev[0] + f * (eps_dev[1] - eps_dev[0]);
-  return eps_dev[0] + std::numbers::sqrt3 * std::asinh(0.5 * *gamma * f);
+  return eps_dev[0] + eps_dev_of_simple_shear(gamma_before + f * *gamma) -
+         eps_dev_of_simple_shear(gamma_before);
 }
 
 double Leg::fraction_at(double value) const {
-  const double f = gamma ? 2 * std::sinh((value - eps_dev[0]) / std::numbers::sqrt3) / *gamma
-                         : (value - eps_dev[0]) / (eps_dev[1] - eps_dev[0]);
-  return std::clamp(f, 0.0, 1.0);
+  if (!gamma) return std::clamp((value - eps_dev[0]) / (eps_dev[1] - eps_dev[0]), 0.0, 1.0);
+  const double whole = value - eps_dev[0] + eps_dev_of_simple_shear(gamma_before);
+  const double gamma_there = 2 * std::sinh(whole / std::numbers::sqrt3);
+  return std::clamp((gamma_there - gamma_before) / *gamma, 0.0, 1.0);
 }
 
 void Waypoint::move(const StrainTensor& strain, const std::optional<StrainTensor>& leg_axis) {
   if (leg_axis) axis = leg_axis;
-  if (has_deviator(strain)) eps_dev += signed_deviator(strain, axis.value_or(axis_uni));
+  if (has_deviator(strain)) {
+    eps_dev += signed_deviator(strain, axis.value_or(axis_uni));
+    gamma = 0;
+  }
   eps_vol += strain[0] + strain[1] + strain[2];
   nu = nu_start * std::exp(eps_vol);
+}
+
+void Waypoint::move(const Leg& leg) {
+  if (!leg.gamma) return move(leg.strain, leg.axis);
+  axis = leg.axis;
+  eps_dev -= eps_dev_of_simple_shear(gamma);
+  gamma += *leg.gamma;
+  eps_dev += eps_dev_of_simple_shear(gamma);
 }
 
 namespace {
@@ -175,9 +198,12 @@ Leg Path::leg(std::size_t i, const Waypoint& from, bool certain) const {
   leg.wanted_ratio = segment.wanted_ratio;
   leg.increment = segment.increment;
   leg.residual = segment.residual;
-  if (segment.mode == Mode::simple_shear) leg.gamma = segment.amount;
+  if (segment.mode == Mode::simple_shear) {
+    leg.gamma = segment.amount;
+    leg.gamma_before = from.gamma;
+  }
   if (segment.mode == Mode::biaxial || segment.mode == Mode::triaxial) leg.to_eps_dev = segment.to_eps_dev;
-  const double size = leg.gamma ? std::abs(*leg.gamma) : largest(leg.strain);
+  const double size = leg.gamma ? std::abs(*leg.gamma) : largest_component(leg.strain);
   const bool waits = !leg.drives() && segment.by_stress();
   if (certain && segment.mode != Mode::relax && !waits && !(size > 1e-14))
     throw Error(file, segment.key, "has nothing to do: its target is the state already reached");
@@ -194,7 +220,7 @@ Leg Path::leg(std::size_t i, const Waypoint& from, bool certain) const {
     leg.axis = from.axis;  // what its servo shears counts along the axis before it
   if (!certain && !leg.axis) leg.axis = axis_of_mode(segment);
   Waypoint to = from;
-  to.move(leg.strain, leg.axis);
+  to.move(leg);
   if (certain && !(to.nu > 0 && to.nu < 1) && !leg.control.by_stress())
     throw Error(file, segment.key,
                 "takes the volume fraction to " + to_text(to.nu) + "; it must stay > 0 and < 1");
@@ -225,7 +251,7 @@ std::vector<Leg> Path::nominal_legs(double nu, bool certain) const {
   for (std::size_t i = 0; i < segments.size(); ++i) {
     certain = certain && !segments[i].by_stress() && !(i > 0 && segments[i - 1].stop);
     Leg leg = this->leg(i, at, certain);
-    at.move(leg.strain, leg.axis);
+    at.move(leg);
     legs.push_back(std::move(leg));
   }
   return legs;
@@ -236,6 +262,35 @@ bool Path::strain_is_known() const {
                       [](const Segment& segment) { return segment.by_stress() || segment.stop; });
 }
 
+namespace {
+
+/// The largest component that a segment prescribes: its key in the segment, and the number there.
+std::pair<std::string, double> largest_prescribed(const Segment& segment) {
+  if (segment.amount) return {"amount", *segment.amount};
+  const auto size = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto c =
+      std::max_element(segment.strain.begin(), segment.strain.end(), size) - segment.strain.begin();
+  const auto at = static_cast<std::size_t>(c);
+  return {segment.mode == Mode::control ? std::string(control_keys.at(at)) + ".strain"
+                                        : "strain[" + std::to_string(at) + "]",
+          segment.strain.at(at)};
+}
+
+/// As far as the strain does not depend on where the segment begins; of targets the box tells.
+void need_a_box_can_follow(const std::string& file, const Segment& segment) {
+  const double by = spread(strain_of(segment, Waypoint(0.5)));
+  if (segment.to_nu || segment.to_eps_vol || segment.to_eps_dev || by <= largest_spread) return;
+  const auto [key, value] = largest_prescribed(segment);
+  throw Error(file, segment.key + "." + key,
+              "strains the box of grains beyond what its edges can hold in double precision: principal "
+              "strains of one "
+              "segment may differ by at most " +
+                  to_text(largest_spread) + ", so this must be, the others in proportion, at most " +
+                  short_text(std::abs(value) * largest_spread / by, 4) + " in size, got " + to_text(value));
+}
+
+}  // namespace
+
 void Path::need_grains_can_follow() const {
   for (const Segment& segment : segments) {
     if (!segment.law_controls.empty())
@@ -245,21 +300,29 @@ void Path::need_grains_can_follow() const {
     if (segment.stop)
       throw Error(file, segment.key + ".stop",
                   "ends a segment of the law (predict); grains go on to the segment's end");
+    need_a_box_can_follow(file, segment);
   }
 }
 
-bool Path::spins() const {
-  return std::any_of(segments.begin(), segments.end(),
-                     [](const Segment& segment) { return segment.mode == Mode::simple_shear; });
+namespace {
+
+/// The first segment whose axes turn, or the end.
+auto first_that_spins(const std::vector<Segment>& segments) {
+  return std::find_if(segments.begin(), segments.end(),
+                      [](const Segment& segment) { return segment.mode == Mode::simple_shear; });
 }
 
+}  // namespace
+
+bool Path::spins() const { return first_that_spins(segments) != segments.end(); }
+
 void Path::need_law_can_follow() const {
-  for (const Segment& segment : segments)
-    if (segment.mode == Mode::simple_shear)
-      throw Error(
-          file, segment.key + ".mode",
-          "must not be simple_shear: its axes of strain turn, and the law carries stress and fabric along "
-          "one direction of shear; without spin it is d2; grains follow simple_shear, too (simulate)");
+  const auto spinning = first_that_spins(segments);
+  if (spinning == segments.end()) return;
+  throw Error(
+      file, spinning->key + ".mode",
+      "must not be simple_shear: its axes of strain turn, and the law carries stress and fabric along "
+      "one direction of shear; without spin it is d2; grains follow simple_shear, too (simulate)");
 }
 
 bool Path::by_stress() const {

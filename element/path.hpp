@@ -88,8 +88,10 @@ struct Leg {
                         ///< of the rate of deformation
   /// Of simple shear: F = 1 + gamma progress e_x (x) e_y; `strain` is then -ln V of the whole leg.
   std::optional<double> gamma;
-  double eps_vol[2];  ///< from the path's start, at begin and end, of `strain`
-  double eps_dev[2];  ///< sum of the signed increments from the path's start, at begin and end, of `strain`
+  double gamma_before = 0;  ///< of the simple shear that this leg goes on with: see Waypoint
+  double eps_vol[2];        ///< from the path's start, at begin and end, of `strain`
+  double eps_dev[2];  ///< sum of the signed increments from the path's start, at begin and end, of `strain`;
+                      ///< legs of simple shear that follow one another count as one
   double duration;    ///< us; for relax and a leg that only waits for stress targets the longest
   Profile profile;
   double tolerance;
@@ -125,10 +127,14 @@ struct Waypoint {
   double nu;
   double eps_vol = 0, eps_dev = 0;   ///< from the path's start
   std::optional<StrainTensor> axis;  ///< of the last leg that sheared
+  double gamma = 0;                  ///< of all simple shear since another shear; 0 where there was none
 
   explicit Waypoint(double start) : nu_start(start), nu(start) {}
-  /// Goes on by the logarithmic strain of a leg, or of part of it.
+  /// Goes on by the logarithmic strain of a leg that is no simple shear, or of part of it.
   void move(const StrainTensor& strain, const std::optional<StrainTensor>& leg_axis);
+  /// Goes on by a leg. In simple shear eps_dev grows to sqrt(3) asinh(gamma/2), that of the whole `gamma`, in
+  /// however many legs it came: -ln V of each for itself would not add up, because its axes turn.
+  void move(const Leg& leg);
 };
 
 struct Path {
@@ -159,7 +165,8 @@ struct Path {
   bool spins() const;
   /// Throws Error (file, key) for a segment that only grains can follow.
   void need_law_can_follow() const;
-  /// Throws Error (file, key) for a segment that only the law can follow.
+  /// Throws Error (file, key) for a segment that only the law can follow, and for one that strains the box by
+  /// more than its numbers can hold (largest_spread).
   void need_grains_can_follow() const;
   std::string file;  ///< for error messages
 };

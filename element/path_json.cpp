@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grainlaw/element/components.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/path.hpp"
 #include "grainlaw/element/path_limits.hpp"
@@ -26,7 +27,6 @@ constexpr std::array all_modes{
     Mode::iso,     Mode::uni,         Mode::d2,      Mode::d3,       Mode::components,
     Mode::relax,   Mode::constant_p,  Mode::biaxial, Mode::triaxial, Mode::isotropic_stress,
     Mode::control, Mode::simple_shear};
-constexpr std::array<const char*, 6> component_names{"x", "y", "z", "yz", "xz", "xy"};
 
 const std::vector<std::string>& controls_of(Mode mode) {
   static const std::vector<std::string> volume{"nu", "eps_vol"}, all{"nu", "eps_vol", "eps_dev"},
@@ -96,13 +96,19 @@ void read_relax(Reader& reader, Segment& segment) {
   segment.duration = reader.number("duration", any_duration, longest_relaxation);
 }
 
+void check_amount(const Reader& reader, double amount) {
+  if (std::abs(amount) < least_strain)
+    reader.fail("amount", "must be at least " + to_text(least_strain) + " in size, got " + to_text(amount));
+}
+
 void read_strain(Reader& reader, Segment& segment) {
   const auto strain = reader.numbers("strain", any_strain, 3);
   if (strain.size() != 3 && strain.size() != 6)
     reader.fail("strain", "must be three numbers [xx, yy, zz] or six [xx, yy, zz, yz, xz, xy], got " +
                               std::to_string(strain.size()));
   std::copy(strain.begin(), strain.end(), segment.strain.begin());
-  if (segment.strain == StrainTensor{}) reader.fail("strain", "must not be zero");
+  if (largest_component(segment.strain) < least_strain)
+    reader.fail("strain", "must have a component of at least " + to_text(least_strain) + " in size");
 }
 
 void read_amount(Reader& reader, Segment& segment) {
@@ -115,7 +121,7 @@ void read_amount(Reader& reader, Segment& segment) {
                                          : "must give either controls or amount");
   if (reader.has("controls")) read_controls(reader.object("controls"), segment);
   segment.amount = reader.maybe_number("amount", any_strain);
-  if (segment.amount && *segment.amount == 0) reader.fail("amount", "must not be 0");
+  if (segment.amount) check_amount(reader, *segment.amount);
 }
 
 /// What component c of mode control follows.
@@ -135,7 +141,7 @@ void read_component(Reader reader, std::size_t c, Segment& segment) {
 /// Shear components by the order that is not theirs: nearest_word would take "yx" for "x".
 void refuse_other_order(const Reader& reader) {
   for (std::size_t c = 3; c < 6; ++c) {
-    const std::string name = component_names[c], other(name.rbegin(), name.rend());
+    const std::string name = control_keys[c], other(name.rbegin(), name.rend());
     if (reader.has(other)) reader.fail(other, "unknown key, did you mean " + name + "?");
   }
 }
@@ -143,7 +149,7 @@ void refuse_other_order(const Reader& reader) {
 /// x, y, z of mode control, the shear components where they are given, and P.
 void read_components(Reader& reader, Segment& segment) {
   for (std::size_t c = 0; c < 6; ++c) {
-    const char* const name = component_names[c];
+    const char* const name = control_keys[c];
     if (c >= 3) reader.optional({name});
     if (c < 3 || reader.has(name)) read_component(reader.object(name), c, segment);
   }
@@ -175,7 +181,7 @@ void read_what(Reader& reader, Segment& segment) {
       if (reader.has("controls"))
         reader.fail("controls", "means nothing in simple_shear; give amount, its gamma");
       segment.amount = reader.number("amount", any_strain);
-      if (*segment.amount == 0) reader.fail("amount", "must not be 0");
+      check_amount(reader, *segment.amount);
       return;
     case Mode::biaxial:
       control.component[0] = read_target_or_start(reader, "stress");
@@ -242,7 +248,11 @@ void read_pace(Reader& reader, Segment& segment) {
 }
 
 void check_drive(const Reader& reader, const Segment& segment) {
-  if (segment.mode != Mode::control || !segment.only_waits()) return;
+  if (segment.mode != Mode::control) return;
+  if (!segment.only_waits() && largest_component(segment.strain) < least_strain)
+    reader.fail("", "must have a strain of at least " + to_text(least_strain) +
+                        " in size, or none but 0, got " + to_text(largest_component(segment.strain)));
+  if (!segment.only_waits()) return;
   if (!segment.control.by_stress())
     reader.fail("", "has nothing to do: no component has a strain or a stress");
   for (const char* key : {"duration", "profile"})
@@ -324,9 +334,9 @@ Json start_json(const Start& start) {
 void put_components(Json& json, const Segment& segment) {
   for (std::size_t c = 0; c < 6; ++c) {
     if (const auto* target = std::get_if<StressTarget>(&segment.control.component[c]))
-      json[component_names[c]] = {{"stress", grainlaw::to_json(*target)}};
+      json[control_keys[c]] = {{"stress", grainlaw::to_json(*target)}};
     else if (c < 3 || segment.strain[c] != 0)
-      json[component_names[c]] = {{"strain", segment.strain[c]}};
+      json[control_keys[c]] = {{"strain", segment.strain[c]}};
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "grainlaw/element/components.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/json.hpp"
@@ -108,9 +109,9 @@ const std::vector<std::string>& prediction_columns() {
 const std::vector<std::string>& record_columns() {
   static const std::vector<std::string> names = [] {
     auto all = prediction_columns();
-    for (const char* name : {"t", "Ek_over_Ep", "sxx", "syy", "szz", "syz", "sxz", "sxy", "Fxx", "Fyy", "Fzz",
-                             "Fyz", "Fxz", "Fxy"})
-      all.emplace_back(name);
+    all.insert(all.end(), {"t", "Ek_over_Ep"});
+    for (const ComponentNames& columns : {stress_columns, fabric_columns})
+      all.insert(all.end(), columns.begin(), columns.end());
     return all;
   }();
   return names;

@@ -10,6 +10,13 @@ namespace grainlaw {
 /// xx, yy, zz, yz, xz, xy; no factor 2 on the shear components.
 using Sym6 = std::array<double, 6>;
 
+/// Size of the largest component.
+inline double largest_component(const Sym6& q) {
+  double most = 0;
+  for (const double component : q) most = std::abs(component) > most ? std::abs(component) : most;
+  return most;
+}
+
 inline double trace(const Sym6& q) { return q[0] + q[1] + q[2]; }
 
 /// Q_dev = sqrt(3 J2), Eqs. 2.4, 2.8, 2.10, 4.7: always >= 0; the mode gives the sign.

@@ -6,6 +6,7 @@
 #include "grainlaw/apps/report/prose.hpp"
 #include "grainlaw/apps/report/sections.hpp"
 #include "grainlaw/apps/report/symbols.hpp"
+#include "grainlaw/element/median.hpp"
 
 namespace grainlaw::report {
 namespace {
@@ -33,12 +34,6 @@ Markup checks(const Inputs& inputs) {
   const Markup sentence = element("p", text(std::to_string(held) + " of " + std::to_string(judged) +
                                             " checks that theory demands of the numbers hold."));
   return "<h3>Does the physics show?</h3>\n"_html + sentence + table.html();
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
 /// Median error over all predicted runs, by form.

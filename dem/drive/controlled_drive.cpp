@@ -1,11 +1,12 @@
 #include "grainlaw/dem/drive/controlled_drive.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "grainlaw/dem/packing/least_width.hpp"
+#include "grainlaw/element/components.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/short_text.hpp"
 
 namespace grainlaw::dem {
 
@@ -18,8 +19,6 @@ constexpr double steering_over_contact = 10;
 constexpr double bearing_contacts = 1.5;
 /// A leg that only waits for stresses ends when they have been reached for so many response times.
 constexpr double settled_responses = 10;
-/// The box must stay so much wider than the largest grain.
-constexpr double narrowest = 1.02;
 
 class ControlledLeg {
  public:
@@ -31,7 +30,8 @@ class ControlledLeg {
         control_(state.control),
         servo_(dynamics.material(), leg.control),
         steering_time_(steering_over_contact *
-                       dynamics.material().contact_duration(dynamics.material().r_mean)) {
+                       dynamics.material().contact_duration(dynamics.material().r_mean)),
+        least_width_(least_width(dynamics.grains().largest_radius(), dynamics.material().r_mean)) {
     for (const Quad& place : dynamics.grains().place) solid_ += sphere_volume(place.w);
   }
 
@@ -42,22 +42,24 @@ class ControlledLeg {
     dynamics_.start_flow(dt_, box_rate(0));
   }
 
+  /// One step, unless the leg is lost because its grains need more room than the box has after it.
   void step() {
     const double own_step = dt_ * control_.speed * control_.servo.throttle;
-    const Mat3 rate = box_rate(own_step);
+    const Mat3 rate = box_rate(own_step), edges = exponential(dt_ * rate) * dynamics_.cell().edges();
+    control_.lost = !has_room(edges);
+    if (control_.lost) return;
     control_.own_time += own_step;
-    dynamics_.step(exponential(dt_ * rate) * dynamics_.cell().edges(), rate);
+    dynamics_.step(edges, rate);
     ++state_.step;
     control_.looked = state_.step % look_interval == 0;
     if (control_.looked) look(dt_ * static_cast<double>(look_interval));
   }
 
-  /// At a look: whether the leg is over, well or not.
+  /// Whether the leg is over, well or not; well only at a look.
   bool done() {
+    if (control_.lost) return true;
     if (!control_.looked) return false;
-    const double out_of_box = dynamics_.cell().narrowest() / (2 * dynamics_.grains().largest_radius());
     control_.lost = !servo_.possible(control_.servo) || control_.servo.off > leg_.control.servo.wait ||
-                    out_of_box < narrowest || dynamics_.cell().volume() <= solid_ ||
                     (leg_.drives() && over_the_end());
     if (control_.lost) return true;
     if (!servo_.within_tolerance(control_.servo)) return false;
@@ -68,6 +70,13 @@ class ControlledLeg {
  private:
   Glance seen() const {
     return dynamics_.glance(leg_.control.shear_by_stress() ? Stresses::all : Stresses::normal);
+  }
+
+  /// Whether a box with these edges is wide enough for the largest grain, and larger than all of them.
+  bool has_room(const Mat3& edges) const {
+    if (!(determinant(edges) > solid_)) return false;  // nor what is not a number
+    const Cell cell = dynamics_.cell().moved(edges, {});
+    return cell.narrowest() >= least_width_ || (cell.tilted() && Cell(edges).narrowest() >= least_width_);
   }
 
   void look(double elapsed) {
@@ -92,9 +101,8 @@ class ControlledLeg {
   double driven() const {
     if (!leg_.drives()) return 0;
     const double own_step = dt_ * control_.speed;
-    double largest = 0;
-    for (const double e : leg_.strain) largest = std::max(largest, std::abs(e));
-    return largest * (leg_.progress(control_.own_time + own_step) - leg_.progress(control_.own_time)) / dt_;
+    return largest_component(leg_.strain) *
+           (leg_.progress(control_.own_time + own_step) - leg_.progress(control_.own_time)) / dt_;
   }
 
   /// G = dH/dt H^-1, symmetric, over a step by which the leg's own time goes on by `own_step`. Diagonal to
@@ -121,14 +129,8 @@ class ControlledLeg {
   LegState& state_;
   ControlState& control_;
   Servo servo_;
-  double steering_time_, solid_ = 0;
+  double steering_time_, least_width_, solid_ = 0;
 };
-
-std::string short_text(double x) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", x);
-  return text.data();
-}
 
 }  // namespace
 
@@ -147,7 +149,7 @@ void follow_controlled(Dynamics& dynamics, const Leg& leg, const StepPlan& plan,
   if (state.step == 0) controlled.begin();
   while (!controlled.done()) {
     controlled.step();
-    if (!after_step(state.step)) return;
+    if (!state.control.lost && !after_step(state.step)) return;
   }
 }
 
@@ -155,19 +157,20 @@ std::string why_lost(const Material& material, const Leg& leg, const LegState& s
   const Servo servo(material, leg.control);
   const ServoState& at = state.control.servo;
   const bool box_is_in_the_way = !(at.off > leg.control.servo.wait);
+  const std::string no_room = "too narrow for its largest grain, or too small for all";
   if (leg.to_eps_dev && state.control.own_time >= leg.duration)
     return "eps_dev never comes to " + to_text(*leg.to_eps_dev);
-  if (servo.possible(at) && servo.within_tolerance(at)) return "its strain cannot be reached in this box";
+  if (servo.possible(at) && servo.within_tolerance(at)) return "its strain makes the box " + no_room;
   const std::size_t worst = servo.worst(at);
   const auto target = servo.targets()[worst];
   const double unit = material.stress_unit();
-  const std::string name = target ? std::array{"sxx", "syy", "szz", "syz", "sxz", "sxy"}[*target] : "P";
+  const std::string name = target ? stress_columns[*target] : "P";
   if (!servo.possible(at)) return name + " is 0 where the segment starts, and cannot be kept; give a number";
   const bool of_P = Servo::is_shear(target) && at.P > std::abs(at.target[worst]);
-  return name + " cannot be kept at " + short_text(at.target[worst] / unit) + " to " +
-         short_text(leg.control.servo.tolerance) + (of_P ? " of P = " + short_text(at.P / unit) : "") +
-         ": it is " + short_text(at.reached[worst] / unit) + " after " + short_text(at.off) +
-         " us out of tolerance" + (box_is_in_the_way ? ", and the box cannot be strained further" : "");
+  return name + " cannot be kept at " + short_text(at.target[worst] / unit, 4) + " to " +
+         short_text(leg.control.servo.tolerance, 4) + (of_P ? " of P = " + short_text(at.P / unit, 4) : "") +
+         ": it is " + short_text(at.reached[worst] / unit, 4) + " after " + short_text(at.off, 4) +
+         " us out of tolerance" + (box_is_in_the_way ? ", and the box would become " + no_room : "");
 }
 
 }  // namespace grainlaw::dem

@@ -60,6 +60,7 @@ struct LegState {
   Mat3 start_edges;                 ///< H where it began, mm
   double kinetic_at_start = 0;      ///< for relax, ug mm^2/us^2
   double eps_vol = 0, eps_dev = 0;  ///< of the path where it began
+  double gamma = 0;                 ///< of the simple shear before it: see Waypoint
   StrainTensor axis{};              ///< of the last leg before it that sheared; zero: none
   ControlState control;             ///< of a controlled leg
   std::uint64_t passes = 1;         ///< over the contacts in the last step; not kept
@@ -67,7 +68,7 @@ struct LegState {
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {
     archive(self.step, self.entered, self.start_edges, self.kinetic_at_start, self.eps_vol, self.eps_dev,
-            self.axis, self.control);
+            self.gamma, self.axis, self.control);
   }
 };
 

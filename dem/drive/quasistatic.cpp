@@ -13,9 +13,8 @@ constexpr std::uint64_t most_passes = 2'000'000;  // an increment near jamming t
 }
 
 StepPlan plan_increments(const Leg& leg, std::uint64_t rows) {
-  double largest = 0;
-  for (const double component : leg.strain) largest = std::max(largest, std::abs(component));
-  const auto needed = static_cast<std::uint64_t>(std::ceil(largest / leg.increment * (1 - 1e-12)));
+  const auto needed =
+      static_cast<std::uint64_t>(std::ceil(largest_component(leg.strain) / leg.increment * (1 - 1e-12)));
   StepPlan plan;
   if (leg.drives()) plan.steps = std::max(std::uint64_t{1}, (needed + rows - 1) / rows) * rows;
   plan.dt = leg.duration / static_cast<double>(plan.steps);

@@ -1,12 +1,17 @@
 #include "grainlaw/dem/drive/stage.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "grainlaw/dem/drive/controlled_drive.hpp"
 #include "grainlaw/dem/drive/quasistatic.hpp"
+#include "grainlaw/dem/packing/least_width.hpp"
 #include "grainlaw/dem/scene/preparation.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/short_text.hpp"
+#include "grainlaw/element/tensor.hpp"
 
 namespace grainlaw::dem {
 
@@ -15,7 +20,8 @@ namespace {
 constexpr double relaxation_share = 0.3;  // of its longest duration that a relaxation takes
 
 constexpr std::uint64_t least_steps_per_row = 2;
-constexpr double looks_per_gamma = 32, most_looks = 100'000;
+constexpr double coarse_look = 1.0 / 32, fine_look = 1e-6;  // strain between looks at the width of a box
+constexpr double largest_skew = 67'108'864;                 // 2^26: half of the bits of a number
 
 /// The share of a leg's strain at which a wanted snapshot lies.
 double wanted_progress(const StateRequest& wanted, const Leg& leg, double nu_start) {
@@ -128,33 +134,111 @@ Stage stage_from(const Scene& scene, std::size_t i, const Waypoint& from, const 
 
 namespace {
 
-/// Distance between faces of the box where they are nearest on a leg, mm. A box that glides is narrowest
-/// where its edges lean by half of one, and as wide again where they lean by a whole.
-double narrowest_along(const Drive& drive, const Leg& leg) {
-  double least = Cell(drive.edges(leg.duration)).narrowest();
-  if (!leg.gamma) return least;
-  const double looks = std::min(std::ceil(looks_per_gamma * (1 + std::abs(*leg.gamma))), most_looks);
-  for (double k = 1; k < looks; ++k)
-    least = std::min(least, Cell(drive.edges(leg.time_at(k / looks))).narrowest());
-  return least;
+/// Whether the product of the edges is not too large for the volume between them to be told from 0: their
+/// rounding errors are some 1e-16 of that product.
+bool holds(const Mat3& edges) {
+  double product = 1;
+  for (std::size_t c = 0; c < 3; ++c) product *= norm(edges.column(c));
+  return determinant(edges) > product / largest_skew;  // false for what is not a number
 }
+
+/// The box as far as it is known before anything follows the path: an axis that a stress strains, and that
+/// goes with no other, is as wide as can be.
+class KnownBox {
+ public:
+  explicit KnownBox(const Mat3& edges) : edges_(edges) {}
+
+  /// Whether anything is still known on this leg. Then `narrowest_on_leg` may be asked for, and `leave` is next.
+  bool enter(const Leg& leg) {
+    if (leg.control.mean || leg.control.shear_by_stress()) return false;
+    for (std::size_t c = 0; c < 3; ++c)
+      open_[c] = open_[c] || leg.control.by_stress(c) || (leg.to_eps_dev && leg.strain[c] != 0);
+    known_ = leg;
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (!open_[c]) continue;
+      if (!is_alone(c)) return false;
+      edges_(c, c) = far;
+      known_.strain[c] = 0;
+    }
+    return !(open_[0] && open_[1] && open_[2]);
+  }
+
+  /// Distance between faces of the box where they are nearest on the leg, mm, as far as that is less than
+  /// `least` or not; none where the numbers of its edges no longer hold the box. A box that glides is
+  /// narrowest where its edges lean by half of one, and as wide again where they lean by a whole; one that is
+  /// tilted otherwise may be narrow between its ends, too.
+  std::optional<double> narrowest_on_leg(double least) const {
+    const Drive drive(edges_, known_);
+    const Mat3 end = drive.edges(known_.duration);
+    if (!holds(edges_) || !holds(end)) return std::nullopt;
+    const double first = Cell(edges_).narrowest(), last = Cell(end).narrowest();
+    if (!known_.gamma && edges_.is_diagonal() && end.is_diagonal()) return last;
+    return narrowest_between(drive, least, {0, first}, {1, last});
+  }
+
+  void leave() { edges_ = Drive(edges_, known_).edges(known_.duration); }
+
+ private:
+  static constexpr double far = 1e9;  // mm
+
+  struct Look {
+    double share, narrowest;  ///< of the leg's strain; mm
+  };
+
+  /// No distance between planes of a lattice changes faster than by exp of the strain, so that between two
+  /// looks it cannot fall below exp(-strain/2) of the less.
+  double narrowest_between(const Drive& drive, double least, const Look& a, const Look& b) const {
+    const double strain = (b.share - a.share) * size(), seen = std::min(a.narrowest, b.narrowest);
+    const bool fine_enough = strain < (seen < least ? coarse_look : fine_look);
+    if (fine_enough || seen * std::exp(-0.5 * strain) >= least) return seen;
+    const double share = 0.5 * (a.share + b.share);
+    const Look middle{share, Cell(drive.edges(known_.time_at(share))).narrowest()};
+    return std::min(narrowest_between(drive, least, a, middle), narrowest_between(drive, least, middle, b));
+  }
+
+  /// At least the largest principal strain of the leg.
+  double size() const {
+    double squares = 0;
+    for (std::size_t c = 0; c < 6; ++c) squares += (c < 3 ? 1 : 2) * known_.strain[c] * known_.strain[c];
+    return known_.gamma ? std::abs(*known_.gamma) : std::sqrt(squares);
+  }
+
+  /// Whether edge c is at a right angle to the others and stays so.
+  bool is_alone(std::size_t c) const {
+    if (known_.gamma && c != 2) return false;
+    const Mat3 strain = matrix_of(known_.strain);
+    for (const std::size_t other : {(c + 1) % 3, (c + 2) % 3})
+      if (edges_(c, other) != 0 || edges_(other, c) != 0 || strain(c, other) != 0) return false;
+    return true;
+  }
+
+  Mat3 edges_;
+  Leg known_{};
+  std::array<bool, 3> open_{};
+};
 
 }  // namespace
 
 void check_width(const std::vector<Stage>& stages, const State& start, const Scene& scene) {
-  const double widest = 2 * *std::max_element(start.radius.begin(), start.radius.end()),
-               least = widest + 0.02 * scene.material.r_mean;
-  Mat3 edges = start.box;
+  const double largest = *std::max_element(start.radius.begin(), start.radius.end()),
+               least = least_width(largest, scene.material.r_mean);
+  KnownBox box(start.box);
   for (const Stage& stage : stages) {
-    if (stage.leg.control.by_stress()) return;
-    const Drive drive(edges, stage.leg);
-    const double narrowest = narrowest_along(drive, stage.leg);
-    edges = drive.edges(stage.leg.duration);
-    if (stage.segment && narrowest < least)
-      throw Error(scene.file, "path.segments[" + std::to_string(*stage.segment) + "]",
-                  "makes the box " + to_text(narrowest) + " mm wide, too narrow for a grain of diameter " +
-                      to_text(widest) + " mm (it would touch its own image); must stay >= " + to_text(least) +
-                      " mm: take more grains or less strain");
+    if (!box.enter(stage.leg)) return;
+    const std::optional<double> narrowest = box.narrowest_on_leg(least);
+    const auto refuse = [&](const std::string& why) {
+      throw Error(scene.file, stage.segment ? scene.path.segments.at(*stage.segment).key : "preparation",
+                  why);
+    };
+    if (!narrowest)
+      refuse("tilts the box until its edges, which are never flipped, span more than " +
+             short_text(largest_skew, 2) +
+             " times its volume, so that their numbers no longer hold it; strain less");
+    if (stage.segment && *narrowest < least)
+      refuse("makes the box " + to_text(*narrowest) + " mm wide, too narrow for a grain of diameter " +
+             to_text(2 * largest) + " mm (it would touch its own image); must stay >= " + to_text(least) +
+             " mm: take more grains or less strain");
+    box.leave();
   }
 }
 

@@ -49,8 +49,9 @@ std::vector<Stage> plan_stages(const Scene& scene, double nu_start, const Longes
 /// The stage of segment i again, when the strain so far is known.
 Stage stage_from(const Scene& scene, std::size_t i, const Waypoint& from, const LongestSteps& longest);
 
-/// Throws Error if the box becomes narrower along the path than its largest grain allows, as far as its
-/// strain is known in advance. `start` is the state the first stage starts from.
+/// Throws Error (file, segment) if the box becomes narrower along the path than its largest grain allows, or
+/// is tilted so far that its edges no longer hold it, as far as its strain is known in advance: under stress
+/// control, of the axes that no stress strains. `start` is the state the first stage starts from.
 void check_width(const std::vector<Stage>& stages, const State& start, const Scene& scene);
 
 }  // namespace grainlaw::dem

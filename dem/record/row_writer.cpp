@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "grainlaw/element/components.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/short_text.hpp"
 
 namespace grainlaw::dem {
 
@@ -26,7 +27,7 @@ class Row {
     if (at == names.end()) throw Error(std::string("a DEM record has no column ") + column);
     values_[static_cast<std::size_t>(at - names.begin())] = value;
   }
-  void set(const std::array<const char*, 6>& columns, const Sym6& tensor, double factor) {
+  void set(const ComponentNames& columns, const Sym6& tensor, double factor) {
     for (std::size_t c = 0; c < 6; ++c) set(columns[c], factor * tensor[c]);
   }
   /// The row, with what observers add after it.
@@ -43,12 +44,6 @@ class Row {
 std::vector<std::string> with(std::vector<std::string> columns, const std::vector<std::string>& more) {
   columns.insert(columns.end(), more.begin(), more.end());
   return columns;
-}
-
-std::string short_text(double x) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", x);
-  return text.data();
 }
 
 }  // namespace
@@ -88,8 +83,8 @@ void RowWriter::append(const Dynamics& dynamics, std::size_t segment, double eps
   row.set("f_NR", m.f_NR);
   row.set("t", time);
   row.set("Ek_over_Ep", m.elastic > 0 ? m.kinetic / m.elastic : undefined);
-  row.set({"sxx", "syy", "szz", "syz", "sxz", "sxy"}, m.stress, per_unit);
-  row.set({"Fxx", "Fyy", "Fzz", "Fyz", "Fxz", "Fxy"}, m.fabric, 1);
+  row.set(stress_columns, m.stress, per_unit);
+  row.set(fabric_columns, m.fabric, 1);
   record_.append(
       row.with(observers_.observe(dynamics, velocity, m, material_, sign_, segment, record_.rows())));
   watch(m, pressure);
@@ -115,7 +110,7 @@ std::vector<std::string> RowWriter::warnings() const {
                    ": the grains fly rather than rest on one another; lower the rate, or relax first");
   else if (restless_ > 0)
     list.push_back("E_k/E_p is above 1e-3 in " + std::to_string(restless_) + rows + " (largest " +
-                   short_text(worst_ratio_) + ", at nu = " + short_text(worst_nu_) +
+                   short_text(worst_ratio_, 3) + ", at nu = " + short_text(worst_nu_, 3) +
                    "): there the deformation is not quasi-static");
   return list;
 }

@@ -138,6 +138,7 @@ void ElementTest::plan_again() {
   Waypoint from(place_.nu_start);
   from.move({third, third, third}, {});
   from.eps_dev = place_.leg.eps_dev;
+  from.gamma = place_.leg.gamma;
   if (place_.leg.axis != StrainTensor{}) from.axis = place_.leg.axis;
   stage = stage_from(scene_, *stage.segment, from, longest_);
   if (place_.leg.step == 0) check_width({stage}, dynamics_.state(), scene_);
@@ -186,6 +187,8 @@ void ElementTest::leave_leg() {
   next.eps_vol = leg.eps_vol[1];
   next.eps_dev = leg.eps_dev[1];
   next.axis = leg.axis.value_or(place_.leg.axis);
+  const bool sheared = leg.axis || leg.control.by_stress();
+  next.gamma = leg.gamma ? leg.gamma_before + *leg.gamma : sheared ? 0 : place_.leg.gamma;
   if (leg.controlled()) {
     const StrainTensor strain = leg_strain(dynamics_, place_.leg);
     next.eps_vol = leg.eps_vol[0] + strain[0] + strain[1] + strain[2];
@@ -199,8 +202,8 @@ void ElementTest::leave_leg() {
 /// Ends the test on a leg that cannot go on.
 void ElementTest::cut_short(const std::string& why) {
   const Stage& stage = stages_[place_.stage];
-  cut_short_ = "segment " + std::to_string(*stage.segment) + " (" + name_of(stage.leg.mode) + "): " + why +
-               "; the test ends there";
+  const Error error(scene_.file, scene_.path.segments.at(*stage.segment).key, why);
+  cut_short_ = std::string(error.what()) + "; the test ends there";
   place_.stage = stages_.size();
 }
 

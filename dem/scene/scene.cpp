@@ -1,13 +1,12 @@
 #include "grainlaw/dem/scene/scene.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "grainlaw/dem/observe/names.hpp"
 #include "grainlaw/dem/step/dynamics.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/short_text.hpp"
 #include "grainlaw/element/words.hpp"
 
 namespace grainlaw::dem {
@@ -106,13 +105,6 @@ void check_target(const StateRequest& request, const std::string& list, std::siz
   if (wanted < low - target_slack || wanted > high + target_slack)
     throw Error(file, key,
                 "must lie in " + segment + ", " + name + " from " + range + ", got " + to_text(wanted));
-}
-
-/// Four digits, enough to tell what is wrong.
-std::string short_text(double x) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", x);
-  return text.data();
 }
 
 /// Without links and dots, whether or not there is something at that place.
@@ -308,13 +300,13 @@ void Scene::check_grains(const State& state) const {
   const double slack = radius_slack * material.r_mean;
   if (std::abs(mean - material.r_mean) > slack)
     throw Error(file, "material.r_mean",
-                "must be that of the grains in " + from->file.string() + ", " + short_text(mean) +
+                "must be that of the grains in " + from->file.string() + ", " + short_text(mean, 4) +
                     " mm, got " + to_text(material.r_mean));
   if (std::abs(spread - wanted_spread) > slack)
     throw Error(file, "material.w",
                 "must be that of the grains in " + from->file.string() + ", whose radii deviate by " +
-                    short_text(spread) + " mm from their mean; got " + to_text(material.w) +
-                    ", with which they would by " + short_text(wanted_spread) + " mm");
+                    short_text(spread, 4) + " mm from their mean; got " + to_text(material.w) +
+                    ", with which they would by " + short_text(wanted_spread, 4) + " mm");
 }
 
 std::size_t Scene::record_rows() const {

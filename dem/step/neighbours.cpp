@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "grainlaw/dem/packing/least_width.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::dem {
@@ -14,7 +15,6 @@ namespace {
 constexpr double rest_budget = 0.01;  // s_i of a grain at rest, in units of the mean radius
 constexpr double box_budget = 1e-3;   // 1 - e_min: the compression of the box that an inner list survives
 constexpr double outer_skin = 0.7;    // in units of the mean radius; less where the box is narrow
-constexpr double least_skin = 0.02;   // the narrowest outer skin worth listing
 constexpr std::uint32_t most_told_apart = 31;  // numbers of partners
 constexpr double flight_share = 0.125;         // s_i at most this share of the outer skin, but of a flyer
 constexpr std::size_t most_flyers = 16;
@@ -209,11 +209,12 @@ bool Neighbours::outer_covers(const Grains& grains, const Cell& cell, ThreadPool
 void Neighbours::sort_and_list(Grains& grains, Cell& cell) {
   cell.reduce();
   const double narrowest = cell.narrowest(), widest_grain = 2 * largest_radius_;
-  outer_skin_ = std::min(narrowest - widest_grain, outer_skin * unit_);  // in this order not a number stays
-  if (!(outer_skin_ >= least_skin * unit_))
+  const double least = least_width(largest_radius_, unit_);
+  outer_skin_ = std::min(narrowest - widest_grain, outer_skin * unit_);
+  if (!(narrowest >= least))
     throw Error("the box is " + to_text(narrowest) +
                 " mm wide, too narrow for its largest grain of diameter " + to_text(widest_grain) +
-                " mm: it must be wider than " + to_text(widest_grain + least_skin * unit_) +
+                " mm: it must be wider than " + to_text(least) +
                 " mm, or a grain would touch its own image; take more grains or less strain");
   for (Quad& p : grains.place) {
     const Vec3 x = cell.wrap({p.x, p.y, p.z});

@@ -2,13 +2,13 @@
 
 #include <cmath>
 
+#include "grainlaw/element/components.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace grainlaw::model {
 
 namespace {
 
-constexpr std::array<const char*, 6> component_names{"x", "y", "z", "yz", "xz", "xy"};
 constexpr double same = 1e-9;  // relative: stresses or strains given as the same number
 
 bool close(double x, double y) { return std::abs(x - y) <= same * (std::abs(x) + std::abs(y)); }
@@ -125,9 +125,9 @@ void PathControl::isotropic_stress() {
 void PathControl::refuse_shear() const {
   const Control& control = segment_.control;
   for (std::size_t c = 3; c < 6; ++c) {
-    if (control.by_stress(c)) cannot("it has no shear stress as a target", component_names[c]);
+    if (control.by_stress(c)) cannot("it has no shear stress as a target", control_keys[c]);
     if (control.axis_by_stress() && segment_.strain[c] != 0)
-      cannot("stresses on axes do not go with a shear strain", component_names[c]);
+      cannot("stresses on axes do not go with a shear strain", control_keys[c]);
   }
 }
 
@@ -175,16 +175,15 @@ void PathControl::three_stresses() {
 void PathControl::two_stresses(std::size_t strained) {
   const std::size_t i = (strained + 1) % 3, j = (strained + 2) % 3;
   const auto &at_i = target_of(segment_.control, i), &at_j = target_of(segment_.control, j);
-  const std::string sides = std::string(component_names[i]) + " and " + component_names[j];
+  const std::string sides = std::string(control_keys[i]) + " and " + control_keys[j];
   if (!close(m(i), m(j)))
-    cannot("stresses on " + sides + " and a strain of " + component_names[strained] +
+    cannot("stresses on " + sides + " and a strain of " + control_keys[strained] +
            " are no two quantities along the axis of the path");
   if (at_i.has_value() != at_j.has_value() || (at_i && !close(*at_i, *at_j)))
     cannot("the stresses on " + sides + " must be the same");
-  aims_ = {
-      stress_on(i, sides),
-      Aim{Prescribed::strain(std::string("the strain of ") + component_names[strained], 1.0 / 3, m(strained)),
-          std::nullopt, segment_.strain[strained]}};
+  aims_ = {stress_on(i, sides), Aim{Prescribed::strain(std::string("the strain of ") + control_keys[strained],
+                                                       1.0 / 3, m(strained)),
+                                    std::nullopt, segment_.strain[strained]}};
   approaches_ = true;
 }
 
@@ -196,14 +195,13 @@ void PathControl::one_stress(std::size_t loaded) {
   const bool coaxial = close(m(i), m(j)) && close(e_i, e_j);
   const bool plane = (m(i) == 0 && e_i == 0) || (m(j) == 0 && e_j == 0);
   if (!coaxial && !plane)
-    cannot(std::string("a stress on ") + component_names[loaded] + " and these strains of " +
-           component_names[i] + " and " + component_names[j] + " are not along the axis of the path");
+    cannot(std::string("a stress on ") + control_keys[loaded] + " and these strains of " + control_keys[i] +
+           " and " + control_keys[j] + " are not along the axis of the path");
   if (plane)
     remark_ = "plane strain is not along the axis of D2: the law takes its volume and its projection";
-  aims_ = {stress_on(loaded, component_names[loaded]),
-           Aim{Prescribed::strain(
-                   std::string("the strain of ") + component_names[i] + " and " + component_names[j],
-                   -a(loaded), 1),
+  aims_ = {stress_on(loaded, control_keys[loaded]),
+           Aim{Prescribed::strain(std::string("the strain of ") + control_keys[i] + " and " + control_keys[j],
+                                  -a(loaded), 1),
                std::nullopt, (a(i) - a(loaded)) * e_i + (a(j) - a(loaded)) * e_j}};
   approaches_ = true;
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "grainlaw/calibrate/predict_records.hpp"
+#include "grainlaw/element/median.hpp"
 #include "grainlaw/element/record.hpp"
 #include "grainlaw/model/forms/law.hpp"
 #include "grainlaw/model/light/light_law.hpp"
@@ -28,11 +29,6 @@ const model::ParameterSet& set() {
 Record record_of(const std::string& test) {
   return Record::read_csv(GRAINLAW_DATA_DIR "/records/" + test + "/record.csv",
                           {"segment", "eps_vol", "eps_dev", "nu", "P"});
-}
-
-double median(std::vector<double> x) {
-  std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
-  return x[x.size() / 2];
 }
 
 /// A segment of a test: the jamming densities that P next to jamming says, of grains and of the law.

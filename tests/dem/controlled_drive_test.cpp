@@ -117,7 +117,7 @@ TEST_F(ControlledDrive, SaysWhatItCannotReachAndKeepsTheRest) {
                           {"mode": "isotropic_stress", "P": 1, "rate": 1e-2}, {"mode": "relax"})",
                        R"("rows": 4)");
   EXPECT_EQ(r.rows(), 5u);
-  EXPECT_THAT(summary.cut_short, testing::StartsWith("segment 1 (isotropic_stress): s"));
+  EXPECT_THAT(summary.cut_short, testing::StartsWith("scene.json: path.segments[1]: s"));
   EXPECT_THAT(summary.cut_short, testing::HasSubstr(" cannot be kept at 1 to 0.001: it is "));
   EXPECT_EQ(summary.warnings.back(), summary.cut_short);
   EXPECT_THAT(read_file(dir / "a" / "provenance.json"), testing::HasSubstr("cannot be kept at 1 to"));

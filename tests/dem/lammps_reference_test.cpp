@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "lammps_file.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {
@@ -33,39 +34,10 @@ Table read_csv(const std::string& name) {
   return rows;
 }
 
-/// Reads numbers, skipping words.
-double next(std::istream& file) {
-  for (std::string word; file >> word;)
-    if (word.find_first_not_of("+-.e0123456789") == std::string::npos) return std::stod(word);
-  ADD_FAILURE() << "the file is short";
-  return 0;
-}
-
 /// The packing that LAMMPS began with.
 State read_packing() {
   std::ifstream file(folder / "packing.data");
-  std::string title;
-  std::getline(file, title);
-  const auto count = static_cast<std::size_t>(next(file));
-  EXPECT_EQ(next(file), 1);  // type of atoms
-  State state;
-  for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_EQ(next(file), 0);
-    state.box(c, c) = next(file);
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    EXPECT_EQ(next(file), static_cast<double>(i + 1));
-    EXPECT_EQ(next(file), 1);
-    state.radius.push_back(0.5 * next(file));
-    EXPECT_EQ(next(file), Material{}.rho);
-    state.position.push_back({next(file), next(file), next(file)});
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    EXPECT_EQ(next(file), static_cast<double>(i + 1));
-    state.velocity.push_back({next(file), next(file), next(file)});
-    for (int c = 0; c < 3; ++c) EXPECT_EQ(next(file), 0);  // spin
-  }
-  return state;
+  return test::read_lammps(file);
 }
 
 /// Our run of a case: edges move at constant speed, x grows and y shrinks by `strain`.

@@ -108,7 +108,7 @@ TEST(Path, RefusesWhatCannotBe) {
   EXPECT_THAT(refused_segment(R"({"mode": "components", "strain": [1, 2, 3, 4]})"),
               testing::HasSubstr("three numbers [xx, yy, zz] or six [xx, yy, zz, yz, xz, xy], got 4"));
   EXPECT_THAT(refused_segment(R"({"mode": "components", "strain": [0, 0, 0, 0, 0, 0]})"),
-              testing::HasSubstr("must not be zero"));
+              testing::HasSubstr("must have a component of at least 1e-12 in size"));
   EXPECT_THAT(refused_segment(R"({"mode": "relax", "rate": 1})"), testing::HasSubstr("unknown key"));
   EXPECT_THAT(
       refused_segment(R"({"repeat": 1000000, "segments": [{"mode": "d2", "amount": 0.1, "repeat": 1000}]})"),
@@ -323,11 +323,72 @@ TEST(Path, SimpleShear) {
     EXPECT_THAT(error.what(), testing::StartsWith("p.json: segments[0].mode: must not be simple_shear"));
   }
   EXPECT_EQ(refused_segment(R"({"mode": "simple_shear", "amount": 0})"),
-            "p.json: segments[0].amount: must not be 0");
+            "p.json: segments[0].amount: must be at least 1e-12 in size, got 0");
+  EXPECT_EQ(refused_segment(R"({"mode": "simple_shear", "amount": 1e-16})"),
+            "p.json: segments[0].amount: must be at least 1e-12 in size, got 1e-16");
   EXPECT_THAT(refused_segment(R"({"mode": "simple_shear", "controls": {"eps_dev": 0.1}})"),
               testing::HasSubstr("segments[0].controls: means nothing in simple_shear; give amount"));
   EXPECT_THAT(refused_segment(R"({"mode": "simple_shear", "amount": 0.1, "profile": "quasistatic"})"),
               testing::HasSubstr("segments[0].profile: must be one of constant, cosine, got"));
+}
+
+/// In however many segments: eps_dev is that of the whole shear, sqrt(3) asinh(gamma/2). What does not shear
+/// may come between, another shear ends it.
+TEST(Path, SimpleShearGoesOnAcrossSegments) {
+  const auto eps_dev = [](double gamma) { return std::sqrt(3.0) * std::asinh(gamma / 2); };
+  const auto end = [](const std::string& segments) {
+    return path_of(R"({"segments": [)" + segments + "]}").legs(0.7).back();
+  };
+  const auto shear = [](double gamma, int repeat = 1) {
+    return R"({"mode": "simple_shear", "amount": )" + to_text(gamma) + R"(, "repeat": )" +
+           std::to_string(repeat) + "}";
+  };
+  EXPECT_NEAR(end(shear(2)).eps_dev[1], eps_dev(2), 1e-15);
+  EXPECT_NEAR(end(shear(0.02, 100)).eps_dev[1], eps_dev(2), 1e-13);
+  EXPECT_NEAR(
+      end(shear(2) + R"(, {"mode": "relax"}, {"mode": "iso", "amount": 0.01}, )" + shear(-3)).eps_dev[1],
+      eps_dev(-1), 1e-14);
+  EXPECT_NEAR(end(shear(2) + R"(, {"mode": "d2", "amount": 0.1}, )" + shear(1)).eps_dev[1],
+              eps_dev(2) + 0.1 + eps_dev(1), 1e-14);
+  const Leg back = end(shear(2) + "," + shear(-3));
+  for (const double f : {0.0, 0.3, 2.0 / 3, 1.0}) {
+    EXPECT_NEAR(back.eps_dev_at(f), eps_dev(2 - 3 * f), 1e-14);
+    EXPECT_NEAR(back.fraction_at(back.eps_dev_at(f)), f, 1e-14);
+  }
+}
+
+TEST(Path, GrainsNeedABoxWhoseNumbersHold) {
+  const auto refused_for_grains = [](const std::string& segment) {
+    try {
+      path_of(R"({"segments": [{"mode": "relax"}, )" + segment + "]}").need_grains_can_follow();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  const auto control = [](double x, double y, double xy, const std::string& more) {
+    return R"({"mode": "control", "x": {"strain": )" + to_text(x) + R"(}, "y": {"strain": )" + to_text(y) +
+           R"(}, "z": {"strain": 0}, "xy": {"strain": )" + to_text(xy) + "}" + more + "}";
+  };
+  const std::string steered = R"(, "profile": "steered")", kept = R"(, "P": "start")";
+  for (const std::string& more : {std::string(), steered, kept})
+    EXPECT_EQ(
+        refused_for_grains(control(0, 0, 50, more)),
+        "p.json: segments[1].xy.strain: strains the box of grains beyond what its edges can hold in double "
+        "precision: principal strains of one segment may differ by at most 18, so this must be, the others "
+        "in "
+        "proportion, at most 9 in size, got 50");
+  // Of xy alone they differ by 2 xy, of x, -x and xy by 2 hypot(x, xy).
+  EXPECT_EQ(refused_for_grains(control(0, 0, 8.999, kept)), "accepted");
+  EXPECT_EQ(refused_for_grains(control(5.39, -5.39, -7.19, kept)), "accepted");
+  EXPECT_THAT(refused_for_grains(control(6, -6, -8, kept)),
+              testing::HasSubstr("at most 7.2 in size, got -8"));
+  EXPECT_THAT(refused_for_grains(R"({"mode": "components", "strain": [0, 0, 0, 0, 9.1, 0]})"),
+              testing::HasSubstr("segments[1].strain[4]: strains"));
+  EXPECT_THAT(refused_for_grains(R"({"mode": "triaxial", "amount": -20})"),
+              testing::HasSubstr("segments[1].amount: strains"));
+  EXPECT_EQ(refused_for_grains(R"({"mode": "simple_shear", "amount": 100})"), "accepted");
+  EXPECT_EQ(refused_for_grains(R"({"mode": "iso", "amount": -50})"), "accepted");
 }
 
 TEST(SignConvention, AShearStressIsTheAxisWhereNothingIsStrained) {
