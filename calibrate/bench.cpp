@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <numbers>
 #include <set>
@@ -10,6 +9,7 @@
 #include "grainlaw/dem/drive/quasistatic.hpp"
 #include "grainlaw/dem/drive/stage.hpp"
 #include "grainlaw/dem/scene/scene.hpp"
+#include "grainlaw/element/short_text.hpp"
 
 namespace grainlaw::calibrate {
 
@@ -20,13 +20,8 @@ constexpr double compression_rate = 5e-5;                // of the packing, from
 constexpr std::int64_t fewest_packings = 3;              // where packings are compared
 constexpr double slowest = 0.1;                          // rate over the default
 constexpr double balance = 1e-9;                         // residual of the packing, so that it does not creep
-constexpr double relaxation_share = 0.3;                 // of its longest duration that a relaxation takes
-
-std::string short_text(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", x);
-  return text;
-}
+constexpr int name_digits = 6;
+constexpr double relaxation_share = 0.3;  // of its longest duration that a relaxation takes
 
 std::string packing_name(const BenchSetting& setting, std::int64_t seed) {
   return "packing-n" + std::to_string(setting.count) + "-gas" + std::to_string(setting.gas_steps) + "-s" +
@@ -35,9 +30,9 @@ std::string packing_name(const BenchSetting& setting, std::int64_t seed) {
 
 std::string run_name(BenchTest test, const BenchSetting& setting, std::int64_t seed, std::int64_t twin) {
   if (test == BenchTest::preparation) return packing_name(setting, seed);
-  const std::string how = setting.increment > 0
-                              ? "-increment" + short_text(setting.increment)
-                              : "-step" + std::to_string(setting.steps) + "-rate" + short_text(setting.rate);
+  const std::string how = setting.increment > 0 ? "-increment" + short_text(setting.increment, name_digits)
+                                                : "-step" + std::to_string(setting.steps) + "-rate" +
+                                                      short_text(setting.rate, name_digits);
   return name_of(test) + "-n" + std::to_string(setting.count) + how + "-s" + std::to_string(seed) + "-t" +
          std::to_string(twin);
 }
@@ -54,7 +49,7 @@ double strain_of_a_row(const Bench& bench, BenchTest test) {
 double increment_of(const Bench& bench, BenchTest test, int many) {
   const double strain = strain_of_a_row(bench, test) / many;
   const double digit = std::pow(10, std::floor(std::log10(strain)) - 2);
-  return std::stod(short_text(std::ceil(strain / digit) * digit));
+  return std::stod(short_text(std::ceil(strain / digit) * digit, name_digits));
 }
 
 /// The values of a knob, the finest last.

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <optional>
 
+#include "grainlaw/element/median.hpp"
 #include "grainlaw/element/record.hpp"
+#include "grainlaw/element/short_text.hpp"
 
 namespace grainlaw::calibrate {
 
@@ -73,13 +74,6 @@ struct Cost {
   std::size_t runs = 0;
 };
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return undefined;
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
-
 Cost cost_of(const Variant& variant, const RunFolder& folder) {
   Cost cost;
   std::vector<double> seconds;
@@ -92,7 +86,7 @@ Cost cost_of(const Variant& variant, const RunFolder& folder) {
       ++cost.runs;
     }
   cost.particle_steps /= static_cast<double>(cost.runs);
-  cost.core_s = median_of(std::move(seconds));
+  cost.core_s = median(std::move(seconds));
   return cost;
 }
 
@@ -143,12 +137,7 @@ void add_errors(const Sweep& sweep, const RunFolder& folder, std::vector<BenchEr
   }
 }
 
-std::string number(double x) {
-  if (!std::isfinite(x)) return "";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", x);
-  return text;
-}
+std::string number(double x) { return std::isfinite(x) ? short_text(x, 6) : std::string(); }
 
 double measure_of(const BenchError& line, Judge judge) {
   return judge == Judge::chance ? line.comparison.band : line.packings;
