@@ -16,6 +16,7 @@
 #include "grainlaw/dem/run/trial.hpp"
 #include "grainlaw/dem/run/trial_packing.hpp"
 #include "grainlaw/dem/run/watch.hpp"
+#include "grainlaw/dem/scene/preparation.hpp"
 
 namespace grainlaw::dem {
 
@@ -158,6 +159,8 @@ void note(const std::optional<LegCost>& tried, double size, StageCost& cost) {
   const double longer = cost.stage.leg.minimises() ? std::pow(size, minimiser_power - 1) : 1;
   cost.tried = true;
   cost.seconds = size * longer * tried->seconds;
+  cost.least = size * longer * tried->least;
+  cost.most = size * longer * tried->most;
   cost.passes = longer * tried->passes;
   cost.bytes = size * tried->bytes;
 }
@@ -165,23 +168,44 @@ void note(const std::optional<LegCost>& tried, double size, StageCost& cost) {
 /// Tries those stages that need it and lie nearest to `place` among `places`, in `flowing` grains at that
 /// density. Segments that are repeated are tried once.
 void try_stages(const Scene& scene, std::size_t grains, const State& flowing, double place,
-                const std::vector<double>& places, std::vector<StageCost>& stages) {
+                const std::vector<double>& places, const CostOptions& options,
+                std::vector<StageCost>& stages) {
   const double size = static_cast<double>(grains) / static_cast<double>(flowing.count());
+  const double budget = options.trial_seconds.value_or(usual_trial(Likeness::density));
   std::map<std::string, std::optional<LegCost>> known;
   for (StageCost& cost : stages) {
     if (!cost.stage.segment || !needs_trial(cost.stage) || cost.tried) continue;
     if (nearest(0.5 * (cost.nu[0] + cost.nu[1]), places) != place) continue;
     const auto [found, is_new] = known.try_emplace(scene.path.segments[*cost.stage.segment].key);
     std::optional<LegCost>& tried = found->second;
-    if (is_new) tried = try_leg(scene.material, flowing, cost.stage, Likeness::density);
+    if (is_new) tried = try_leg(scene.material, flowing, cost.stage, Likeness::density, budget);
     note(tried, size, cost);
   }
 }
 
-/// Where the path begins with a snapshot, its first stage is tried from that.
-void try_first_stage(const Scene& scene, const State& start, StageCost& first) {
-  if (!first.stage.segment || !needs_trial(first.stage) || start.count() > largest_trial) return;
-  note(try_leg(scene.material, start, first.stage, Likeness::all), 1, first);
+/// The grains that a run begins with, where it is tried from its beginning.
+std::optional<State> first_grains(const Scene& scene, const State& start, const CostOptions& options) {
+  if (start.count() > largest_trial) return std::nullopt;
+  const auto* packing = std::get_if<NewPacking>(&scene.preparation);
+  if (packing == nullptr) return start;
+  if (options.trial_seconds) return random_gas(scene.material, *packing);
+  return std::nullopt;
+}
+
+/// Tries stages in the grains that they begin with: those that need it, and, on the way to them, all others,
+/// as long as each ends within its time. After a servo the stages are planned anew, which is not done here.
+void try_from_beginning(const Scene& scene, const State& start, const CostOptions& options,
+                        std::vector<StageCost>& stages) {
+  std::optional<State> grains = first_grains(scene, start, options);
+  const double budget = options.trial_seconds.value_or(usual_trial(Likeness::all));
+  const auto last =
+      std::find_if(stages.rbegin(), stages.rend(), [](const auto& cost) { return needs_trial(cost.stage); });
+  for (auto cost = stages.begin(); grains && cost != last.base(); ++cost) {
+    std::optional<LegCost> tried = try_leg(scene.material, *grains, cost->stage, Likeness::all, budget);
+    if (needs_trial(cost->stage)) note(tried, 1, *cost);
+    const bool goes_on = tried && tried->end && !cost->stage.leg.control.by_stress();
+    grains = goes_on ? std::move(tried->end) : std::nullopt;
+  }
 }
 
 std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::size_t grains,
@@ -204,7 +228,7 @@ std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::
       trial.moduli(flowing.base(), main, grains);
     }
     trials.push_back(trial.cost());
-    try_stages(scene, grains, flowing.base(), place, places, stages);
+    try_stages(scene, grains, flowing.base(), place, places, options, stages);
   }
   return trials;
 }
@@ -217,23 +241,114 @@ double mean_of(const std::vector<TrialCost>& trials, Value&& value) {
   return sum / static_cast<double>(trials.size());
 }
 
+/// What one pass over all grains takes, or one of something else, on the path.
+double of_all(const std::vector<TrialCost>& path, const SceneCost& cost, double TrialCost::*what) {
+  return static_cast<double>(cost.grains) * mean_of(path, [&](const TrialCost& t) { return t.*what; });
+}
+
+double per_grain(const std::vector<TrialCost>& path, double TrialCost::*what) {
+  return mean_of(path, [&](const TrialCost& t) { return t.*what; });
+}
+
+struct Trials {
+  std::vector<TrialCost> prepared, path;
+};
+
+Trials try_all(const Scene& scene, const State& start, const CostOptions& options,
+               std::vector<StageCost>& stages) {
+  const auto* own = std::get_if<NewPacking>(&scene.preparation);
+  TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
+  Trials trials;
+  if (own != nullptr) trials.prepared = try_preparation(packing, scene.material, stages);
+  try_from_beginning(scene, start, options, stages);
+  trials.path = try_path(packing, scene, start.count(), options, stages);
+  return trials;
+}
+
+void take_steps(const std::vector<TrialCost>& path, SceneCost& cost) {
+  cost.contacts_per_grain = per_grain(path, &TrialCost::contacts);
+  cost.pairs_per_grain = per_grain(path, &TrialCost::pairs);
+  cost.force_seconds = of_all(path, cost, &TrialCost::force);
+  cost.damping_seconds = of_all(path, cost, &TrialCost::damping);
+  cost.motion_seconds = std::max(of_all(path, cost, &TrialCost::step) - cost.force_seconds, 0.0);
+  cost.fields =
+      fields_of(per_grain(path, &TrialCost::engine_bytes), per_grain(path, &TrialCost::threads_bytes));
+}
+
+void take_rows_and_files(const Scene& scene, const std::vector<TrialCost>& path, SceneCost& cost) {
+  cost.row_seconds = of_all(path, cost, &TrialCost::row);
+  cost.rows = scene.record_rows();
+  cost.snapshots = scene.measure.snapshots.size();
+  cost.snapshot_seconds = of_all(path, cost, &TrialCost::snapshot);
+  cost.snapshot_bytes = static_cast<double>(cost.grains) * 2 * sizeof(Vec3);
+  cost.checkpoint_seconds = of_all(path, cost, &TrialCost::checkpoint);
+  cost.checkpoint_bytes = of_all(path, cost, &TrialCost::checkpoint_bytes);
+}
+
+void take_moduli(const Scene& scene, const std::vector<TrialCost>& path, SceneCost& cost) {
+  cost.moduli = scene.measure.moduli.size();
+  for (const TrialCost& trial : path) {
+    cost.moduli_seconds = std::max(cost.moduli_seconds, trial.moduli.seconds);
+    cost.moduli_bytes = std::max(cost.moduli_bytes, trial.moduli.bytes);
+  }
+}
+
+/// The time of a stage that was not tried, by its planned passes.
+double planned_seconds(const Trials& trials, const StageCost& stage, const SceneCost& cost) {
+  if (stage.stage.leg.minimises()) return stage.passes * cost.force_seconds;
+  const std::vector<TrialCost>& near = stage.stage.segment ? trials.path : trials.prepared;
+  return stage.passes * static_cast<double>(cost.grains) * mean_step(near, stage);
+}
+
+void take_stages(const Trials& trials, std::vector<StageCost> stages, SceneCost& cost) {
+  for (StageCost& stage : stages) {
+    if (stage.tried) continue;
+    stage.seconds = stage.most = planned_seconds(trials, stage, cost);
+    stage.least = stage.stage.leg.drives() ? stage.seconds : 0;
+  }
+  cost.stages = std::move(stages);
+}
+
+void take_observers(const Scene& scene, const std::vector<TrialCost>& path, SceneCost& cost) {
+  const double grains = static_cast<double>(cost.grains);
+  for (std::size_t k = 0; k < scene.measure.observe.size(); ++k) {
+    const std::string& name = scene.measure.observe[k];
+    cost.observers.push_back({name, grains * mean_of(path, [&](const auto& t) { return t.observers[k]; }),
+                              bytes_of(name, grains, grains * cost.contacts_per_grain, cost.rows)});
+  }
+}
+
 }  // namespace
 
-double SceneCost::seconds_without_checkpoints() const {
+double SceneCost::seconds_of_rows_and_files() const {
   double sum = row_seconds * static_cast<double>(rows) + moduli_seconds * static_cast<double>(moduli) +
                snapshot_seconds * static_cast<double>(snapshots);
   for (const ObserverCost& observer : observers) sum += observer.seconds_per_row * static_cast<double>(rows);
-  for (const StageCost& stage : stages) sum += stage.seconds;
   return sum;
 }
 
-double SceneCost::checkpoints() const {
-  return std::floor(seconds_without_checkpoints() / std::max(checkpoint_every, Watch::shortest_interval));
+double SceneCost::seconds_without_checkpoints(double StageCost::*of) const {
+  double sum = seconds_of_rows_and_files();
+  for (const StageCost& stage : stages) sum += stage.*of;
+  return sum;
 }
 
-double SceneCost::seconds() const {
-  return seconds_without_checkpoints() + checkpoints() * checkpoint_seconds;
+double SceneCost::checkpoints_in(double seconds) const {
+  return std::floor(seconds / std::max(checkpoint_every, Watch::shortest_interval));
 }
+
+double SceneCost::with_checkpoints(double StageCost::*of) const {
+  const double seconds = seconds_without_checkpoints(of);
+  return seconds + checkpoints_in(seconds) * checkpoint_seconds;
+}
+
+double SceneCost::checkpoints() const {
+  return checkpoints_in(seconds_without_checkpoints(&StageCost::seconds));
+}
+
+double SceneCost::seconds() const { return with_checkpoints(&StageCost::seconds); }
+double SceneCost::least() const { return with_checkpoints(&StageCost::least); }
+double SceneCost::most() const { return with_checkpoints(&StageCost::most); }
 
 double SceneCost::particle_steps() const {
   double sum = 0;
@@ -252,49 +367,15 @@ double SceneCost::bytes() const {
 SceneCost cost_of(const Scene& scene, const CostOptions& options) {
   const State start = start_of(scene);
   std::vector<StageCost> stages = planned(scene, start);
-  const auto* own = std::get_if<NewPacking>(&scene.preparation);
-  TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
-  std::vector<TrialCost> prepared;
-  if (own != nullptr) prepared = try_preparation(packing, scene.material, stages);
-  try_first_stage(scene, start, stages.front());
-  const std::vector<TrialCost> path = try_path(packing, scene, start.count(), options, stages);
-  const double grains = static_cast<double>(start.count());
-  const auto of_all = [&](double TrialCost::*cost) {
-    return grains * mean_of(path, [&](const TrialCost& t) { return t.*cost; });
-  };
-  const auto per_grain = [&](double TrialCost::*cost) { return of_all(cost) / grains; };
+  const Trials trials = try_all(scene, start, options, stages);
   SceneCost cost;
   cost.grains = start.count();
-  cost.contacts_per_grain = per_grain(&TrialCost::contacts);
-  cost.pairs_per_grain = per_grain(&TrialCost::pairs);
-  cost.force_seconds = of_all(&TrialCost::force);
-  cost.damping_seconds = of_all(&TrialCost::damping);
-  cost.motion_seconds = std::max(of_all(&TrialCost::step) - cost.force_seconds, 0.0);
-  cost.row_seconds = of_all(&TrialCost::row);
-  cost.rows = scene.record_rows();
-  cost.snapshots = scene.measure.snapshots.size();
-  cost.snapshot_seconds = of_all(&TrialCost::snapshot);
-  cost.snapshot_bytes = grains * 2 * sizeof(Vec3);
   cost.checkpoint_every = options.checkpoint_every;
-  cost.checkpoint_seconds = of_all(&TrialCost::checkpoint);
-  cost.checkpoint_bytes = of_all(&TrialCost::checkpoint_bytes);
-  cost.moduli = scene.measure.moduli.size();
-  for (const TrialCost& trial : path) {
-    cost.moduli_seconds = std::max(cost.moduli_seconds, trial.moduli.seconds);
-    cost.moduli_bytes = std::max(cost.moduli_bytes, trial.moduli.bytes);
-  }
-  cost.fields = fields_of(per_grain(&TrialCost::engine_bytes), per_grain(&TrialCost::threads_bytes));
-  for (StageCost& stage : stages)
-    if (!stage.tried)
-      stage.seconds = stage.passes * (stage.stage.leg.minimises()
-                                          ? cost.force_seconds
-                                          : grains * mean_step(stage.stage.segment ? path : prepared, stage));
-  cost.stages = std::move(stages);
-  for (std::size_t k = 0; k < scene.measure.observe.size(); ++k) {
-    const std::string& name = scene.measure.observe[k];
-    cost.observers.push_back({name, grains * mean_of(path, [&](const auto& t) { return t.observers[k]; }),
-                              bytes_of(name, grains, grains * cost.contacts_per_grain, cost.rows)});
-  }
+  take_steps(trials.path, cost);
+  take_rows_and_files(scene, trials.path, cost);
+  take_moduli(scene, trials.path, cost);
+  take_stages(trials, std::move(stages), cost);
+  take_observers(scene, trials.path, cost);
   return cost;
 }
 

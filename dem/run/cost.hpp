@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,10 @@ struct FieldCost {
 
 struct StageCost {
   Stage stage;
-  double nu[2];        ///< volume fraction at begin and end
-  double passes = 0;   ///< over the contacts, planned or tried
-  double seconds = 0;  ///< without rows; of a relaxation, which may end early, the most
+  double nu[2];                ///< volume fraction at begin and end
+  double passes = 0;           ///< over the contacts, planned or tried
+  double seconds = 0;          ///< without rows; of a relaxation, which may end early, the most
+  double least = 0, most = 0;  ///< between which they mostly lie; `seconds` both, where no range is known
   bool tried = false;  ///< whether a part of it was run (see try_leg), its steps being known only then
   double bytes = 0;    ///< held beside the grains while it lasts
 };
@@ -52,18 +54,27 @@ struct SceneCost {
   std::vector<ObserverCost> observers;
 
   double seconds() const;      ///< of one core, all together
+  double least() const;        ///< s: with the least of each stage
+  double most() const;         ///< s: with the most of each
   double checkpoints() const;  ///< that fall into them
   double particle_steps() const;
   double bytes() const;  ///< of memory, at most
 
  private:
-  double seconds_without_checkpoints() const;
+  double seconds_of_rows_and_files() const;
+  double seconds_without_checkpoints(double StageCost::*of) const;
+  double checkpoints_in(double seconds) const;
+  double with_checkpoints(double StageCost::*of) const;
 };
 
 /// What a run is told beside its scene (see RunHooks).
 struct CostOptions {
   int threads = 1;
   double checkpoint_every = 60;  ///< s
+  /// Processor seconds that a stage may be tried whose work is known only when the grains have run; if not
+  /// said, usual_trial(). Where it is said, the preparation is run too, each of its stages as long: its
+  /// grains are those that such a stage begins with.
+  std::optional<double> trial_seconds = {};
 };
 
 /// Throws Error as run_element_test does for bad input.

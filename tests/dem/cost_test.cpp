@@ -131,6 +131,42 @@ TEST(Cost, OfFilesAgainstThoseOfARun) {
   fs::remove_all(dir);
 }
 
+/// From a snapshot, stages whose steps are known only when the grains have run are run one after the other,
+/// those between them too: with time enough, their passes are those of the run.
+TEST(Cost, StagesThatAreTriedAsAWholeTakeWhatTheirRunTakes) {
+  const fs::path dir = fs::temp_directory_path() / ("grainlaw-cost-chain-" + std::to_string(::getpid()));
+  run_element_test(scene_of(R"({"preparation": {"count": 64, "rate": 2e-3, "relax": {"duration": 5}},
+    "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.75}, "rate": 1e-3}]},
+    "measure": {"rows": 1, "snapshots": [{"segment": 0}]}})"),
+                   dir / "packing");
+  const Scene scene = scene_of(R"({"preparation": {"snapshot": ")" + (dir / "packing/snapshots.h5").string() +
+                               R"("}, "path": {"segments": [{"mode": "relax", "residual": 1e-6},
+      {"mode": "triaxial", "amount": 0.002, "rate": 1e-4}]}, "measure": {"rows": 2}})");
+  CostOptions options;
+  options.trial_seconds = 1000;
+  const SceneCost cost = cost_of(scene, options);
+  const RunSummary run = run_element_test(scene, dir / "run");
+  EXPECT_DOUBLE_EQ(cost.particle_steps(), static_cast<double>(run.particle_steps));
+  for (const StageCost& stage : cost.stages) EXPECT_TRUE(stage.tried) << stage.stage.name;
+  EXPECT_EQ(cost.least(), cost.most());
+  fs::remove_all(dir);
+}
+
+/// The range of each stage goes into that of the whole; a relaxation may end at once.
+TEST(Cost, RangesAddUp) {
+  SceneCost cost = cost_of(scene_of(R"({"preparation": {"count": 64, "nu": 0.7},
+    "path": {"segments": [{"mode": "d2", "amount": 0.01}]}, "measure": {"rows": 1}})"));
+  ASSERT_EQ(cost.stages.size(), 3u);
+  EXPECT_EQ(cost.stages[1].least, 0);
+  EXPECT_NEAR(cost.seconds() - cost.least(), cost.stages[1].seconds, 1e-9 * cost.seconds());
+  EXPECT_EQ(cost.most(), cost.seconds());
+  cost.stages[2].least = 0.5 * cost.stages[2].seconds;
+  cost.stages[2].most = 3 * cost.stages[2].seconds;
+  EXPECT_NEAR(cost.seconds() - cost.least(), cost.stages[1].seconds + 0.5 * cost.stages[2].seconds,
+              1e-9 * cost.seconds());
+  EXPECT_NEAR(cost.most() - cost.seconds(), 2 * cost.stages[2].seconds, 1e-9 * cost.seconds());
+}
+
 TEST(Cost, RefusesWhatARunRefuses) {
   const Scene narrow = scene_of(R"({"preparation": {"count": 8}, "path": {"segments": [
     {"mode": "components", "strain": [1.5, -0.75, -0.75]}]}})");
