@@ -13,6 +13,7 @@
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/packing/size_distribution.hpp"
 #include "grainlaw/dem/run/leg_trial.hpp"
+#include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/run/trial.hpp"
 #include "grainlaw/dem/run/trial_packing.hpp"
 #include "grainlaw/dem/run/watch.hpp"
@@ -66,16 +67,29 @@ std::vector<FieldCost> fields_of(double engine_bytes, double threads_bytes) {
   return fields;
 }
 
-/// Bytes of an observer: kept from row to row, and while a row is measured.
-double bytes_of(const std::string& name, double grains, double contacts, std::size_t rows) {
-  double bytes = 0;
+/// Of grains that one keeps from row to row.
+template <class O>
+constexpr std::size_t kept_bytes_of() {
+  if constexpr (requires { O::kept_bytes; })
+    return O::kept_bytes;
+  else
+    return 0;
+}
+
+/// What an observer holds; its time is for others to say.
+ObserverCost memory_of(const std::string& name, double grains, double contacts, std::size_t rows) {
+  ObserverCost cost{name};
   observe::for_each_asked({name}, [&]<class O>(std::type_identity<O>) {
-    bytes = static_cast<double>(O::grain_bytes) * grains;
-    if (O::walks_contacts) bytes += sizeof(observe::Touch) * contacts + sizeof(std::uint32_t) * grains;
+    cost.kept_bytes = static_cast<double>(kept_bytes_of<O>()) * grains;
+    double table = 0;
     if constexpr (observe::Tabulates<O>)
-      bytes += static_cast<double>(rows * O::table_rows * (O::table_columns.size() + 1) * sizeof(double));
+      table = static_cast<double>(rows * O::table_rows * (O::table_columns.size() + 1) * sizeof(double));
+    cost.kept_bytes += table;
+    if (O::walks_contacts)
+      cost.network_bytes = sizeof(observe::Touch) * contacts + sizeof(std::uint32_t) * grains;
+    cost.bytes = static_cast<double>(O::grain_bytes) * grains + table + cost.network_bytes;
   });
-  return bytes;
+  return cost;
 }
 
 /// The grains of a scene and the box they start in; places only where they come from a snapshot.
@@ -183,28 +197,37 @@ void try_stages(const Scene& scene, std::size_t grains, const State& flowing, do
   }
 }
 
-/// The grains that a run begins with, where it is tried from its beginning.
-std::optional<State> first_grains(const Scene& scene, const State& start, const CostOptions& options) {
-  if (start.count() > largest_trial) return std::nullopt;
+/// The grains that a run begins with, with their places.
+State first_grains(const Scene& scene, const State& start) {
   const auto* packing = std::get_if<NewPacking>(&scene.preparation);
-  if (packing == nullptr) return start;
-  if (options.trial_seconds) return random_gas(scene.material, *packing);
-  return std::nullopt;
+  return packing != nullptr ? random_gas(scene.material, *packing) : start;
 }
 
-/// Tries stages in the grains that they begin with: those that need it, and, on the way to them, all others,
-/// as long as each ends within its time. After a servo the stages are planned anew, which is not done here.
-void try_from_beginning(const Scene& scene, const State& start, const CostOptions& options,
+/// Processor seconds that a stage may take in the grains that it begins with; 0 where it would take more, or
+/// where all stages so far have.
+double budget_of(const Stage& stage, std::size_t grains, double spent, const CostOptions& options) {
+  constexpr double whole_seconds = 3, all_seconds = 6;  // of a stage with planned steps; of all stages
+  constexpr double fastest = 1e-8;                      // s, of a step of a grain
+  if (!options.trial_seconds && spent > all_seconds) return 0;
+  if (needs_trial(stage)) return options.trial_seconds.value_or(usual_trial(Likeness::all));
+  const double budget = options.trial_seconds.value_or(whole_seconds);
+  return fastest * static_cast<double>(grains * stage.stepping.steps) < budget ? budget : 0;
+}
+
+/// Runs the stages from the first on, in the grains that they begin with, as long as each ends within its
+/// time; what is run is known. After a servo the stages are planned anew, which is not done here.
+void run_from_beginning(const Scene& scene, const State& start, const CostOptions& options,
                         std::vector<StageCost>& stages) {
-  std::optional<State> grains = first_grains(scene, start, options);
-  const double budget = options.trial_seconds.value_or(usual_trial(Likeness::all));
-  const auto last =
-      std::find_if(stages.rbegin(), stages.rend(), [](const auto& cost) { return needs_trial(cost.stage); });
-  for (auto cost = stages.begin(); grains && cost != last.base(); ++cost) {
-    std::optional<LegCost> tried = try_leg(scene.material, *grains, cost->stage, Likeness::all, budget);
-    if (needs_trial(cost->stage)) note(tried, 1, *cost);
-    const bool goes_on = tried && tried->end && !cost->stage.leg.control.by_stress();
-    grains = goes_on ? std::move(tried->end) : std::nullopt;
+  if (start.count() > largest_trial) return;
+  State grains = first_grains(scene, start);
+  const double begin = thread_seconds();
+  for (StageCost& cost : stages) {
+    const double budget = budget_of(cost.stage, grains.count(), thread_seconds() - begin, options);
+    if (!(budget > 0)) return;
+    std::optional<LegCost> tried = try_leg(scene.material, grains, cost.stage, Likeness::all, budget);
+    if (needs_trial(cost.stage) || (tried && tried->end)) note(tried, 1, cost);
+    if (!tried || !tried->end || cost.stage.leg.control.by_stress()) return;
+    grains = std::move(*tried->end);
   }
 }
 
@@ -260,7 +283,7 @@ Trials try_all(const Scene& scene, const State& start, const CostOptions& option
   TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
   Trials trials;
   if (own != nullptr) trials.prepared = try_preparation(packing, scene.material, stages);
-  try_from_beginning(scene, start, options, stages);
+  run_from_beginning(scene, start, options, stages);
   trials.path = try_path(packing, scene, start.count(), options, stages);
   return trials;
 }
@@ -312,9 +335,10 @@ void take_stages(const Trials& trials, std::vector<StageCost> stages, SceneCost&
 void take_observers(const Scene& scene, const std::vector<TrialCost>& path, SceneCost& cost) {
   const double grains = static_cast<double>(cost.grains);
   for (std::size_t k = 0; k < scene.measure.observe.size(); ++k) {
-    const std::string& name = scene.measure.observe[k];
-    cost.observers.push_back({name, grains * mean_of(path, [&](const auto& t) { return t.observers[k]; }),
-                              bytes_of(name, grains, grains * cost.contacts_per_grain, cost.rows)});
+    ObserverCost one =
+        memory_of(scene.measure.observe[k], grains, grains * cost.contacts_per_grain, cost.rows);
+    one.seconds_per_row = grains * mean_of(path, [&](const auto& t) { return t.observers[k]; });
+    cost.observers.push_back(one);
   }
 }
 
@@ -356,10 +380,25 @@ double SceneCost::particle_steps() const {
   return sum;
 }
 
+double SceneCost::observers_kept_bytes() const {
+  double sum = 0;
+  for (const ObserverCost& observer : observers) sum += observer.kept_bytes;
+  return sum;
+}
+
+/// Beside what is kept: one observer after the other looks at the same contacts.
+double SceneCost::bytes_of_a_row() const {
+  double network = 0, most = 0;
+  for (const ObserverCost& observer : observers) {
+    network = std::max(network, observer.network_bytes);
+    most = std::max(most, observer.bytes - observer.kept_bytes - observer.network_bytes);
+  }
+  return network + most;
+}
+
 double SceneCost::bytes() const {
-  double sum = 0, beside = moduli_bytes;
+  double sum = observers_kept_bytes(), beside = std::max(moduli_bytes, bytes_of_a_row());
   for (const FieldCost& field : fields) sum += field.bytes_per_grain * static_cast<double>(grains);
-  for (const ObserverCost& observer : observers) sum += observer.bytes;
   for (const StageCost& stage : stages) beside = std::max(beside, stage.bytes);
   return sum + beside;
 }

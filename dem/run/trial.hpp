@@ -31,9 +31,10 @@ struct TrialCost {
 class Trial {
  public:
   /// At the mean rate of `stage` and with its step; where that minimises, with a step of the default. The box
-  /// is strained to and fro by little, however fast the stage is.
+  /// is strained to and fro, by little where that changes the density.
   Trial(const Material& material, const State& state, const Stage& stage);
 
+  /// When it has flown in, for 0.4 s at most: grains at rest have lists that live longer.
   void steps();
   /// Of the standard columns, and of each observer that is asked for.
   void rows(const std::vector<std::string>& asked);
@@ -50,6 +51,7 @@ class Trial {
   template <class Call, class Before>
   double seconds_between_steps(Call&& call, Before&& before);
   void step();
+  void flow_in();
 
   const Material& material_;
   State start_;
