@@ -207,7 +207,7 @@ State first_grains(const Scene& scene, const State& start) {
 /// where all stages so far have.
 double budget_of(const Stage& stage, std::size_t grains, double spent, const CostOptions& options) {
   constexpr double whole_seconds = 3, all_seconds = 6;  // of a stage with planned steps; of all stages
-  constexpr double fastest = 1e-8;                      // s, of a step of a grain
+  constexpr double fastest = 2e-8;                      // s, of a step of a grain
   if (!options.trial_seconds && spent > all_seconds) return 0;
   if (needs_trial(stage)) return options.trial_seconds.value_or(usual_trial(Likeness::all));
   const double budget = options.trial_seconds.value_or(whole_seconds);
@@ -242,6 +242,7 @@ std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::
     flowing.shear();
     flowing.settle();
     Trial trial(scene.material, flowing.state(), main);
+    trial.flow_in();
     trial.steps();
     trial.rows(scene.measure.observe);
     if (!scene.measure.snapshots.empty()) trial.snapshot();

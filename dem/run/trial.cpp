@@ -129,7 +129,6 @@ void Trial::step() {
   ++steps_gone_;
 }
 
-/// What was brought to rest moves as the flow does that it is to stand for.
 void Trial::flow_in() {
   const double begin = thread_seconds();
   for (std::uint64_t left = steps_of(flow_strain, gradient_, dt_);
@@ -138,7 +137,6 @@ void Trial::flow_in() {
 }
 
 void Trial::steps() {
-  flow_in();
   for (std::uint64_t k = 0; k < fewest_steps / 4; ++k) step();
   cost_.step = seconds_of([&] { step(); }, trial_seconds, fewest_steps) / grains_;
   Grains copy = dynamics_.grains();

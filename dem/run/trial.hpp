@@ -34,7 +34,9 @@ class Trial {
   /// is strained to and fro, by little where that changes the density.
   Trial(const Material& material, const State& state, const Stage& stage);
 
-  /// When it has flown in, for 0.4 s at most: grains at rest have lists that live longer.
+  /// What was brought to rest comes to move as the flow does that it is to stand for, in 0.4 s at most: at
+  /// rest, lists live longer.
+  void flow_in();
   void steps();
   /// Of the standard columns, and of each observer that is asked for.
   void rows(const std::vector<std::string>& asked);
@@ -51,7 +53,6 @@ class Trial {
   template <class Call, class Before>
   double seconds_between_steps(Call&& call, Before&& before);
   void step();
-  void flow_in();
 
   const Material& material_;
   State start_;
