@@ -59,10 +59,10 @@ std::vector<FieldCost> fields_of(double engine_bytes, double threads_bytes) {
   double sum = 0;
   for (const FieldCost& field : fields) sum += field.bytes_per_grain;
   fields.push_back({"lists of pairs, and what keeps them right", std::max(engine_bytes - sum, 0.0)});
-  fields.push_back({"room to sort the grains", bytes_in(g.place) + 3 * sizeof(std::uint32_t)});
+  fields.push_back({"room to sort the grains", bytes_in(g.place) + 3 * sizeof(std::uint32_t), true});
   const State s;
-  fields.push_back(
-      {"state as it is read and written", bytes_in(s.position) + bytes_in(s.velocity) + bytes_in(s.radius)});
+  fields.push_back({"state as it is read and written",
+                    bytes_in(s.position) + bytes_in(s.velocity) + bytes_in(s.radius), true});
   if (threads_bytes > 0) fields.push_back({"what threads keep to themselves", threads_bytes});
   return fields;
 }
@@ -381,9 +381,18 @@ double SceneCost::particle_steps() const {
   return sum;
 }
 
-double SceneCost::observers_kept_bytes() const {
+double SceneCost::held_bytes() const {
   double sum = 0;
+  for (const FieldCost& field : fields)
+    if (!field.passing) sum += field.bytes_per_grain * static_cast<double>(grains);
   for (const ObserverCost& observer : observers) sum += observer.kept_bytes;
+  return sum;
+}
+
+double SceneCost::passing_bytes() const {
+  double sum = 0;
+  for (const FieldCost& field : fields)
+    if (field.passing) sum += field.bytes_per_grain * static_cast<double>(grains);
   return sum;
 }
 
@@ -398,10 +407,9 @@ double SceneCost::bytes_of_a_row() const {
 }
 
 double SceneCost::bytes() const {
-  double sum = observers_kept_bytes(), beside = std::max(moduli_bytes, bytes_of_a_row());
-  for (const FieldCost& field : fields) sum += field.bytes_per_grain * static_cast<double>(grains);
+  double beside = std::max({passing_bytes(), moduli_bytes, bytes_of_a_row()});
   for (const StageCost& stage : stages) beside = std::max(beside, stage.bytes);
-  return sum + beside;
+  return held_bytes() + beside;
 }
 
 SceneCost cost_of(const Scene& scene, const CostOptions& options) {

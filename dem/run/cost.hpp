@@ -16,6 +16,7 @@ namespace grainlaw::dem {
 struct FieldCost {
   std::string name;
   double bytes_per_grain;
+  bool passing = false;  ///< held for a moment, and not while a row is measured or an energy minimised
 };
 
 struct StageCost {
@@ -67,7 +68,8 @@ struct SceneCost {
   double seconds_without_checkpoints(double StageCost::*of) const;
   double checkpoints_in(double seconds) const;
   double with_checkpoints(double StageCost::*of) const;
-  double observers_kept_bytes() const;
+  double held_bytes() const;
+  double passing_bytes() const;
   double bytes_of_a_row() const;
 };
 
