@@ -5,7 +5,7 @@
 // Prints the time of a whole test, measured and as explained; the bare scene against the kernel's own loop;
 // a step of the bare scene, a row of the standard columns and what each observer alone adds to a row,
 // measured and as explained; and the same test with each other option alone. Processor seconds of this
-// thread, medians over the rounds; ratios round by round, median and range. Before that, the most memory of
+// thread, medians over the rounds; ratios round by round, median and range. With `memory`, the most memory of
 // runs against what --explain says, each run in a process of its own. Steps and rows are explained by trials
 // alone, as of scenes too long to be run to be explained.
 #include <malloc.h>
@@ -307,8 +307,8 @@ int main(int argc, char** argv) {
   const int rounds = argc > 2 ? std::atoi(argv[2]) : 5;
   const fs::path dir = fs::temp_directory_path() / ("grainlaw-bench-observers-" + std::to_string(::getpid()));
   fs::create_directories(dir);
-  compare_memory(dir / "memory");
   if (count == "memory") {
+    compare_memory(dir / "memory");
     fs::remove_all(dir);
     return 0;
   }
