@@ -34,8 +34,8 @@ class Trial {
   /// is strained to and fro, by little where that changes the density.
   Trial(const Material& material, const State& state, const Stage& stage);
 
-  /// What was brought to rest comes to move as the flow does that it is to stand for, in 0.4 s at most: at
-  /// rest, lists live longer.
+  /// What was brought to rest comes to move as a fast flow does, in 0.4 s at most: at rest, lists live
+  /// longer.
   void flow_in();
   void steps();
   /// Of the standard columns, and of each observer that is asked for.
