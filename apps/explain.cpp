@@ -30,6 +30,13 @@ std::string count_text(double bytes) {
   return std::isnan(bytes) ? std::string("unknown") : fmt::format("{:.0f}", bytes);
 }
 
+/// "about 12 s (8 s to 18 s)"; without a range where there is none.
+std::string range_text(double seconds, double least, double most) {
+  const std::string about = "about " + short_time(seconds);
+  if (!(most > least)) return about;
+  return about + " (" + short_time(least) + " to " + short_time(most) + ")";
+}
+
 std::string terms(const Material& material, const SceneCost& cost) {
   const auto line = [](const char* name, const std::string& what) {
     return fmt::format("  {:<36}{}\n", name, what);
@@ -60,20 +67,28 @@ std::string fields(const SceneCost& cost) {
                             size_text(sum * static_cast<double>(cost.grains)));
 }
 
+std::string nu_text(const dem::StageCost& cost) {
+  if (cost.stage.leg.control.by_stress()) return fmt::format("from {:.4g}", cost.nu[0]);
+  if (cost.nu[0] == cost.nu[1]) return fmt::format("{:.4g}", cost.nu[0]);
+  return fmt::format("{:.4g} to {:.4g}", cost.nu[0], cost.nu[1]);
+}
+
+std::string stage_time(const dem::StageCost& cost) {
+  const Leg& leg = cost.stage.leg;
+  if (cost.tried) return range_text(cost.seconds, cost.least, cost.most);
+  return (leg.minimises() ? "not tried, perhaps "
+          : leg.drives()  ? ""
+                          : "at most ") +
+         short_time(cost.seconds);
+}
+
 std::string stages(const SceneCost& cost) {
   std::string text = "stage                      nu                steps       dt (us)   time\n";
-  for (const auto& [stage, range, passes, seconds, tried, bytes] : cost.stages) {
-    const std::string nu = stage.leg.control.by_stress() ? fmt::format("from {:.4g}", range[0])
-                           : range[0] == range[1]        ? fmt::format("{:.4g}", range[0])
-                                                  : fmt::format("{:.4g} to {:.4g}", range[0], range[1]);
-    text += fmt::format("  {:<24} {:<16} {:>9} {:>12.4g}   {}{}\n", stage.name, nu, stage.stepping.steps,
-                        stage.leg.minimises() ? 0 : stage.stepping.dt,
-                        tried                   ? "about "
-                        : stage.leg.minimises() ? "not tried, perhaps "
-                        : stage.leg.drives()    ? ""
-                                                : "at most ",
-                        short_time(seconds));
-    if (bytes != 0) text += fmt::format("  {:<24} and {} of memory meanwhile\n", "", size_text(bytes));
+  for (const dem::StageCost& of : cost.stages) {
+    const dem::Stage& stage = of.stage;
+    text += fmt::format("  {:<24} {:<16} {:>9} {:>12.4g}   {}\n", stage.name, nu_text(of),
+                        stage.stepping.steps, stage.leg.minimises() ? 0 : stage.stepping.dt, stage_time(of));
+    if (of.bytes != 0) text += fmt::format("  {:<24} and {} of memory meanwhile\n", "", size_text(of.bytes));
   }
   return text + fmt::format("  a step on the path: {}, of it contact forces {}, motion and lists {}\n\n",
                             short_time(cost.force_seconds + cost.motion_seconds),
@@ -111,8 +126,12 @@ std::string rows(const SceneCost& cost) {
 std::string explanation(const dem::Scene& scene, const dem::SceneCost& cost) {
   std::string text = fmt::format("{}: {} grains, w = {:.3g}\n\n", scene.file, cost.grains, scene.material.w);
   text += terms(scene.material, cost) + fields(cost) + stages(cost) + rows(cost);
+  const bool ranges = cost.most() > cost.least();
   return text + fmt::format("in all: {:.3g} particle-steps, {} of one core like this one now, {} of memory\n",
-                            cost.particle_steps(), short_time(cost.seconds()), size_text(cost.bytes()));
+                            cost.particle_steps(),
+                            ranges ? range_text(cost.seconds(), cost.least(), cost.most())
+                                   : short_time(cost.seconds()),
+                            size_text(cost.bytes()));
 }
 
 }  // namespace grainlaw::apps

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -27,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::string scene, output, threads;
+  std::string scene, output, threads, explain_seconds;
   RunArguments run;
   bool explain = false;
 };
@@ -37,6 +38,13 @@ constexpr int most_threads = 1024;
 int threads_of(const Arguments& arguments) {
   if (arguments.threads.empty()) return 1;
   return static_cast<int>(read_whole_number("--threads", arguments.threads, 1, most_threads));
+}
+
+std::optional<double> trial_seconds_of(const Arguments& arguments) {
+  if (arguments.explain_seconds.empty()) return std::nullopt;
+  if (!arguments.explain)
+    throw Error("", "--explain-seconds", "is for --explain alone; leave it out to run the test");
+  return read_number("--explain-seconds", arguments.explain_seconds, between(0.01, 1e9));
 }
 
 /// The folder as an absolute path without "." and "/" at its end, so that names can be put after it.
@@ -117,11 +125,13 @@ int run(const Arguments& arguments) {
   arguments.run.force_simd();
   arguments.run.checkpoint_every();  // bad input is refused before anything is made
   threads_of(arguments);
+  trial_seconds_of(arguments);
   if (arguments.output.empty() && !arguments.explain)
     throw Error("simulate: -o DIR is missing, the directory to make; or --explain, to make none");
   const dem::Scene scene = dem::Scene::load(arguments.scene);
   if (arguments.explain) {
-    const dem::CostOptions options{threads_of(arguments), arguments.run.checkpoint_every()};
+    const dem::CostOptions options{threads_of(arguments), arguments.run.checkpoint_every(),
+                                   trial_seconds_of(arguments)};
     write_stdout(explanation(scene, dem::cost_of(scene, options)));
     return all_well;
   }
@@ -170,6 +180,11 @@ Action add_simulate(CLI::App& program) {
       ->type_name("DIR");
   command->add_flag("--explain", arguments->explain,
                     "only say what the scene turns on and what it will take, from a trial on this machine");
+  command
+      ->add_option("--explain-seconds", arguments->explain_seconds,
+                   "processor seconds for which --explain tries each segment whose steps are not known in "
+                   "advance, the preparation included (default: 1.5 from a snapshot, else 0.5)")
+      ->type_name("SECONDS");
   command
       ->add_option("--threads", arguments->threads,
                    "that share each step; the record does not depend on their number (default: 1)")

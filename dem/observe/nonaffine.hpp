@@ -17,6 +17,7 @@ class Nonaffine {
   static constexpr std::string_view name = "nonaffine";
   static constexpr std::array<std::string_view, 1> columns{"D2_min"};
   static constexpr std::size_t grain_bytes = 320;
+  static constexpr std::size_t kept_bytes = sizeof(Quad);  ///< of these, from row to row
   static constexpr bool walks_contacts = false;
   static constexpr double gap = 0.5;  ///< of neighbours, in <r>
 

@@ -13,9 +13,11 @@
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/packing/size_distribution.hpp"
 #include "grainlaw/dem/run/leg_trial.hpp"
+#include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/run/trial.hpp"
 #include "grainlaw/dem/run/trial_packing.hpp"
 #include "grainlaw/dem/run/watch.hpp"
+#include "grainlaw/dem/scene/preparation.hpp"
 
 namespace grainlaw::dem {
 
@@ -57,24 +59,37 @@ std::vector<FieldCost> fields_of(double engine_bytes, double threads_bytes) {
   double sum = 0;
   for (const FieldCost& field : fields) sum += field.bytes_per_grain;
   fields.push_back({"lists of pairs, and what keeps them right", std::max(engine_bytes - sum, 0.0)});
-  fields.push_back({"room to sort the grains", bytes_in(g.place) + 3 * sizeof(std::uint32_t)});
+  fields.push_back({"room to sort the grains", bytes_in(g.place) + 3 * sizeof(std::uint32_t), true});
   const State s;
-  fields.push_back(
-      {"state as it is read and written", bytes_in(s.position) + bytes_in(s.velocity) + bytes_in(s.radius)});
+  fields.push_back({"state as it is read and written",
+                    bytes_in(s.position) + bytes_in(s.velocity) + bytes_in(s.radius), true});
   if (threads_bytes > 0) fields.push_back({"what threads keep to themselves", threads_bytes});
   return fields;
 }
 
-/// Bytes of an observer: kept from row to row, and while a row is measured.
-double bytes_of(const std::string& name, double grains, double contacts, std::size_t rows) {
-  double bytes = 0;
+/// Of grains that one keeps from row to row.
+template <class O>
+constexpr std::size_t kept_bytes_of() {
+  if constexpr (requires { O::kept_bytes; })
+    return O::kept_bytes;
+  else
+    return 0;
+}
+
+/// What an observer holds; its time is for others to say.
+ObserverCost memory_of(const std::string& name, double grains, double contacts, std::size_t rows) {
+  ObserverCost cost{name};
   observe::for_each_asked({name}, [&]<class O>(std::type_identity<O>) {
-    bytes = static_cast<double>(O::grain_bytes) * grains;
-    if (O::walks_contacts) bytes += sizeof(observe::Touch) * contacts + sizeof(std::uint32_t) * grains;
+    cost.kept_bytes = static_cast<double>(kept_bytes_of<O>()) * grains;
+    double table = 0;
     if constexpr (observe::Tabulates<O>)
-      bytes += static_cast<double>(rows * O::table_rows * (O::table_columns.size() + 1) * sizeof(double));
+      table = static_cast<double>(rows * O::table_rows * (O::table_columns.size() + 1) * sizeof(double));
+    cost.kept_bytes += table;
+    if (O::walks_contacts)
+      cost.network_bytes = sizeof(observe::Touch) * contacts + sizeof(std::uint32_t) * grains;
+    cost.bytes = static_cast<double>(O::grain_bytes) * grains + table + cost.network_bytes;
   });
-  return bytes;
+  return cost;
 }
 
 /// The grains of a scene and the box they start in; places only where they come from a snapshot.
@@ -158,6 +173,8 @@ void note(const std::optional<LegCost>& tried, double size, StageCost& cost) {
   const double longer = cost.stage.leg.minimises() ? std::pow(size, minimiser_power - 1) : 1;
   cost.tried = true;
   cost.seconds = size * longer * tried->seconds;
+  cost.least = size * longer * tried->least;
+  cost.most = size * longer * tried->most;
   cost.passes = longer * tried->passes;
   cost.bytes = size * tried->bytes;
 }
@@ -165,23 +182,53 @@ void note(const std::optional<LegCost>& tried, double size, StageCost& cost) {
 /// Tries those stages that need it and lie nearest to `place` among `places`, in `flowing` grains at that
 /// density. Segments that are repeated are tried once.
 void try_stages(const Scene& scene, std::size_t grains, const State& flowing, double place,
-                const std::vector<double>& places, std::vector<StageCost>& stages) {
+                const std::vector<double>& places, const CostOptions& options,
+                std::vector<StageCost>& stages) {
   const double size = static_cast<double>(grains) / static_cast<double>(flowing.count());
+  const double budget = options.trial_seconds.value_or(usual_trial(Likeness::density));
   std::map<std::string, std::optional<LegCost>> known;
   for (StageCost& cost : stages) {
     if (!cost.stage.segment || !needs_trial(cost.stage) || cost.tried) continue;
     if (nearest(0.5 * (cost.nu[0] + cost.nu[1]), places) != place) continue;
     const auto [found, is_new] = known.try_emplace(scene.path.segments[*cost.stage.segment].key);
     std::optional<LegCost>& tried = found->second;
-    if (is_new) tried = try_leg(scene.material, flowing, cost.stage, Likeness::density);
+    if (is_new) tried = try_leg(scene.material, flowing, cost.stage, Likeness::density, budget);
     note(tried, size, cost);
   }
 }
 
-/// Where the path begins with a snapshot, its first stage is tried from that.
-void try_first_stage(const Scene& scene, const State& start, StageCost& first) {
-  if (!first.stage.segment || !needs_trial(first.stage) || start.count() > largest_trial) return;
-  note(try_leg(scene.material, start, first.stage, Likeness::all), 1, first);
+/// The grains that a run begins with, with their places.
+State first_grains(const Scene& scene, const State& start) {
+  const auto* packing = std::get_if<NewPacking>(&scene.preparation);
+  return packing != nullptr ? random_gas(scene.material, *packing) : start;
+}
+
+/// Processor seconds that a stage may take in the grains that it begins with; 0 where it would take more, or
+/// where all stages so far have.
+double budget_of(const Stage& stage, std::size_t grains, double spent, const CostOptions& options) {
+  constexpr double whole_seconds = 3, all_seconds = 6;  // of a stage with planned steps; of all stages
+  constexpr double fastest = 2e-8;                      // s, of a step of a grain
+  if (!options.trial_seconds && spent > all_seconds) return 0;
+  if (needs_trial(stage)) return options.trial_seconds.value_or(usual_trial(Likeness::all));
+  const double budget = options.trial_seconds.value_or(whole_seconds);
+  return fastest * static_cast<double>(grains * stage.stepping.steps) < budget ? budget : 0;
+}
+
+/// Runs the stages from the first on, in the grains that they begin with, as long as each ends within its
+/// time; what is run is known. After a servo the stages are planned anew, which is not done here.
+void run_from_beginning(const Scene& scene, const State& start, const CostOptions& options,
+                        std::vector<StageCost>& stages) {
+  if (start.count() > largest_trial) return;
+  State grains = first_grains(scene, start);
+  const double begin = thread_seconds();
+  for (StageCost& cost : stages) {
+    const double budget = budget_of(cost.stage, grains.count(), thread_seconds() - begin, options);
+    if (!(budget > 0)) return;
+    std::optional<LegCost> tried = try_leg(scene.material, grains, cost.stage, Likeness::all, budget);
+    if (needs_trial(cost.stage) || (tried && tried->end)) note(tried, 1, cost);
+    if (!tried || !tried->end || cost.stage.leg.control.by_stress()) return;
+    grains = std::move(*tried->end);
+  }
 }
 
 std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::size_t grains,
@@ -195,6 +242,7 @@ std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::
     flowing.shear();
     flowing.settle();
     Trial trial(scene.material, flowing.state(), main);
+    trial.flow_in();
     trial.steps();
     trial.rows(scene.measure.observe);
     if (!scene.measure.snapshots.empty()) trial.snapshot();
@@ -204,7 +252,7 @@ std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::
       trial.moduli(flowing.base(), main, grains);
     }
     trials.push_back(trial.cost());
-    try_stages(scene, grains, flowing.base(), place, places, stages);
+    try_stages(scene, grains, flowing.base(), place, places, options, stages);
   }
   return trials;
 }
@@ -217,23 +265,115 @@ double mean_of(const std::vector<TrialCost>& trials, Value&& value) {
   return sum / static_cast<double>(trials.size());
 }
 
+/// What one pass over all grains takes, or one of something else, on the path.
+double of_all(const std::vector<TrialCost>& path, const SceneCost& cost, double TrialCost::*what) {
+  return static_cast<double>(cost.grains) * mean_of(path, [&](const TrialCost& t) { return t.*what; });
+}
+
+double per_grain(const std::vector<TrialCost>& path, double TrialCost::*what) {
+  return mean_of(path, [&](const TrialCost& t) { return t.*what; });
+}
+
+struct Trials {
+  std::vector<TrialCost> prepared, path;
+};
+
+Trials try_all(const Scene& scene, const State& start, const CostOptions& options,
+               std::vector<StageCost>& stages) {
+  const auto* own = std::get_if<NewPacking>(&scene.preparation);
+  TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
+  Trials trials;
+  if (own != nullptr) trials.prepared = try_preparation(packing, scene.material, stages);
+  run_from_beginning(scene, start, options, stages);
+  trials.path = try_path(packing, scene, start.count(), options, stages);
+  return trials;
+}
+
+void take_steps(const std::vector<TrialCost>& path, SceneCost& cost) {
+  cost.contacts_per_grain = per_grain(path, &TrialCost::contacts);
+  cost.pairs_per_grain = per_grain(path, &TrialCost::pairs);
+  cost.force_seconds = of_all(path, cost, &TrialCost::force);
+  cost.damping_seconds = of_all(path, cost, &TrialCost::damping);
+  cost.motion_seconds = std::max(of_all(path, cost, &TrialCost::step) - cost.force_seconds, 0.0);
+  cost.fields =
+      fields_of(per_grain(path, &TrialCost::engine_bytes), per_grain(path, &TrialCost::threads_bytes));
+}
+
+void take_rows_and_files(const Scene& scene, const std::vector<TrialCost>& path, SceneCost& cost) {
+  cost.row_seconds = of_all(path, cost, &TrialCost::row);
+  cost.rows = scene.record_rows();
+  cost.snapshots = scene.measure.snapshots.size();
+  cost.snapshot_seconds = of_all(path, cost, &TrialCost::snapshot);
+  cost.snapshot_bytes = static_cast<double>(cost.grains) * 2 * sizeof(Vec3);
+  cost.checkpoint_seconds = of_all(path, cost, &TrialCost::checkpoint);
+  cost.checkpoint_bytes = of_all(path, cost, &TrialCost::checkpoint_bytes);
+}
+
+void take_moduli(const Scene& scene, const std::vector<TrialCost>& path, SceneCost& cost) {
+  cost.moduli = scene.measure.moduli.size();
+  for (const TrialCost& trial : path) {
+    cost.moduli_seconds = std::max(cost.moduli_seconds, trial.moduli.seconds);
+    cost.moduli_bytes = std::max(cost.moduli_bytes, trial.moduli.bytes);
+  }
+}
+
+/// The time of a stage that was not tried, by its planned passes.
+double planned_seconds(const Trials& trials, const StageCost& stage, const SceneCost& cost) {
+  if (stage.stage.leg.minimises()) return stage.passes * cost.force_seconds;
+  const std::vector<TrialCost>& near = stage.stage.segment ? trials.path : trials.prepared;
+  return stage.passes * static_cast<double>(cost.grains) * mean_step(near, stage);
+}
+
+void take_stages(const Trials& trials, std::vector<StageCost> stages, SceneCost& cost) {
+  for (StageCost& stage : stages) {
+    if (stage.tried) continue;
+    stage.seconds = stage.most = planned_seconds(trials, stage, cost);
+    stage.least = stage.stage.leg.drives() ? stage.seconds : 0;
+  }
+  cost.stages = std::move(stages);
+}
+
+void take_observers(const Scene& scene, const std::vector<TrialCost>& path, SceneCost& cost) {
+  const double grains = static_cast<double>(cost.grains);
+  for (std::size_t k = 0; k < scene.measure.observe.size(); ++k) {
+    ObserverCost one =
+        memory_of(scene.measure.observe[k], grains, grains * cost.contacts_per_grain, cost.rows);
+    one.seconds_per_row = grains * mean_of(path, [&](const auto& t) { return t.observers[k]; });
+    cost.observers.push_back(one);
+  }
+}
+
 }  // namespace
 
-double SceneCost::seconds_without_checkpoints() const {
+double SceneCost::seconds_of_rows_and_files() const {
   double sum = row_seconds * static_cast<double>(rows) + moduli_seconds * static_cast<double>(moduli) +
                snapshot_seconds * static_cast<double>(snapshots);
   for (const ObserverCost& observer : observers) sum += observer.seconds_per_row * static_cast<double>(rows);
-  for (const StageCost& stage : stages) sum += stage.seconds;
   return sum;
 }
 
-double SceneCost::checkpoints() const {
-  return std::floor(seconds_without_checkpoints() / std::max(checkpoint_every, Watch::shortest_interval));
+double SceneCost::seconds_without_checkpoints(double StageCost::*of) const {
+  double sum = seconds_of_rows_and_files();
+  for (const StageCost& stage : stages) sum += stage.*of;
+  return sum;
 }
 
-double SceneCost::seconds() const {
-  return seconds_without_checkpoints() + checkpoints() * checkpoint_seconds;
+double SceneCost::checkpoints_in(double seconds) const {
+  return std::floor(seconds / std::max(checkpoint_every, Watch::shortest_interval));
 }
+
+double SceneCost::with_checkpoints(double StageCost::*of) const {
+  const double seconds = seconds_without_checkpoints(of);
+  return seconds + checkpoints_in(seconds) * checkpoint_seconds;
+}
+
+double SceneCost::checkpoints() const {
+  return checkpoints_in(seconds_without_checkpoints(&StageCost::seconds));
+}
+
+double SceneCost::seconds() const { return with_checkpoints(&StageCost::seconds); }
+double SceneCost::least() const { return with_checkpoints(&StageCost::least); }
+double SceneCost::most() const { return with_checkpoints(&StageCost::most); }
 
 double SceneCost::particle_steps() const {
   double sum = 0;
@@ -241,60 +381,49 @@ double SceneCost::particle_steps() const {
   return sum;
 }
 
+double SceneCost::held_bytes() const {
+  double sum = 0;
+  for (const FieldCost& field : fields)
+    if (!field.passing) sum += field.bytes_per_grain * static_cast<double>(grains);
+  for (const ObserverCost& observer : observers) sum += observer.kept_bytes;
+  return sum;
+}
+
+double SceneCost::passing_bytes() const {
+  double sum = 0;
+  for (const FieldCost& field : fields)
+    if (field.passing) sum += field.bytes_per_grain * static_cast<double>(grains);
+  return sum;
+}
+
+/// Beside what is kept: one observer after the other looks at the same contacts.
+double SceneCost::bytes_of_a_row() const {
+  double network = 0, most = 0;
+  for (const ObserverCost& observer : observers) {
+    network = std::max(network, observer.network_bytes);
+    most = std::max(most, observer.bytes - observer.kept_bytes - observer.network_bytes);
+  }
+  return network + most;
+}
+
 double SceneCost::bytes() const {
-  double sum = 0, beside = moduli_bytes;
-  for (const FieldCost& field : fields) sum += field.bytes_per_grain * static_cast<double>(grains);
-  for (const ObserverCost& observer : observers) sum += observer.bytes;
+  double beside = std::max({passing_bytes(), moduli_bytes, bytes_of_a_row()});
   for (const StageCost& stage : stages) beside = std::max(beside, stage.bytes);
-  return sum + beside;
+  return held_bytes() + beside;
 }
 
 SceneCost cost_of(const Scene& scene, const CostOptions& options) {
   const State start = start_of(scene);
   std::vector<StageCost> stages = planned(scene, start);
-  const auto* own = std::get_if<NewPacking>(&scene.preparation);
-  TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
-  std::vector<TrialCost> prepared;
-  if (own != nullptr) prepared = try_preparation(packing, scene.material, stages);
-  try_first_stage(scene, start, stages.front());
-  const std::vector<TrialCost> path = try_path(packing, scene, start.count(), options, stages);
-  const double grains = static_cast<double>(start.count());
-  const auto of_all = [&](double TrialCost::*cost) {
-    return grains * mean_of(path, [&](const TrialCost& t) { return t.*cost; });
-  };
-  const auto per_grain = [&](double TrialCost::*cost) { return of_all(cost) / grains; };
+  const Trials trials = try_all(scene, start, options, stages);
   SceneCost cost;
   cost.grains = start.count();
-  cost.contacts_per_grain = per_grain(&TrialCost::contacts);
-  cost.pairs_per_grain = per_grain(&TrialCost::pairs);
-  cost.force_seconds = of_all(&TrialCost::force);
-  cost.damping_seconds = of_all(&TrialCost::damping);
-  cost.motion_seconds = std::max(of_all(&TrialCost::step) - cost.force_seconds, 0.0);
-  cost.row_seconds = of_all(&TrialCost::row);
-  cost.rows = scene.record_rows();
-  cost.snapshots = scene.measure.snapshots.size();
-  cost.snapshot_seconds = of_all(&TrialCost::snapshot);
-  cost.snapshot_bytes = grains * 2 * sizeof(Vec3);
   cost.checkpoint_every = options.checkpoint_every;
-  cost.checkpoint_seconds = of_all(&TrialCost::checkpoint);
-  cost.checkpoint_bytes = of_all(&TrialCost::checkpoint_bytes);
-  cost.moduli = scene.measure.moduli.size();
-  for (const TrialCost& trial : path) {
-    cost.moduli_seconds = std::max(cost.moduli_seconds, trial.moduli.seconds);
-    cost.moduli_bytes = std::max(cost.moduli_bytes, trial.moduli.bytes);
-  }
-  cost.fields = fields_of(per_grain(&TrialCost::engine_bytes), per_grain(&TrialCost::threads_bytes));
-  for (StageCost& stage : stages)
-    if (!stage.tried)
-      stage.seconds = stage.passes * (stage.stage.leg.minimises()
-                                          ? cost.force_seconds
-                                          : grains * mean_step(stage.stage.segment ? path : prepared, stage));
-  cost.stages = std::move(stages);
-  for (std::size_t k = 0; k < scene.measure.observe.size(); ++k) {
-    const std::string& name = scene.measure.observe[k];
-    cost.observers.push_back({name, grains * mean_of(path, [&](const auto& t) { return t.observers[k]; }),
-                              bytes_of(name, grains, grains * cost.contacts_per_grain, cost.rows)});
-  }
+  take_steps(trials.path, cost);
+  take_rows_and_files(scene, trials.path, cost);
+  take_moduli(scene, trials.path, cost);
+  take_stages(trials, std::move(stages), cost);
+  take_observers(scene, trials.path, cost);
   return cost;
 }
 

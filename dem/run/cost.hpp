@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,21 +16,25 @@ namespace grainlaw::dem {
 struct FieldCost {
   std::string name;
   double bytes_per_grain;
+  bool passing = false;  ///< held for a moment, and not while a row is measured or an energy minimised
 };
 
 struct StageCost {
   Stage stage;
-  double nu[2];        ///< volume fraction at begin and end
-  double passes = 0;   ///< over the contacts, planned or tried
-  double seconds = 0;  ///< without rows; of a relaxation, which may end early, the most
-  bool tried = false;  ///< whether a part of it was run (see try_leg), its steps being known only then
-  double bytes = 0;    ///< held beside the grains while it lasts
+  double nu[2];                ///< volume fraction at begin and end
+  double passes = 0;           ///< over the contacts, planned or tried
+  double seconds = 0;          ///< without rows; of a relaxation, which may end early, the most
+  double least = 0, most = 0;  ///< between which they mostly lie; `seconds` both, where no range is known
+  bool tried = false;          ///< whether it was run, or a part of it (see try_leg)
+  double bytes = 0;            ///< held beside the grains while it lasts
 };
 
 struct ObserverCost {
   std::string name;
   double seconds_per_row = 0;
-  double bytes = 0;  ///< kept from row to row, tables included, and while a row is measured
+  double bytes = 0;          ///< alone: all that it holds while a row is measured
+  double kept_bytes = 0;     ///< of these, from row to row, tables included
+  double network_bytes = 0;  ///< of these, the contacts, which observers share
 };
 
 struct SceneCost {
@@ -52,18 +57,29 @@ struct SceneCost {
   std::vector<ObserverCost> observers;
 
   double seconds() const;      ///< of one core, all together
+  double least() const;        ///< s: with the least of each stage
+  double most() const;         ///< s: with the most of each
   double checkpoints() const;  ///< that fall into them
   double particle_steps() const;
   double bytes() const;  ///< of memory, at most
 
  private:
-  double seconds_without_checkpoints() const;
+  double seconds_of_rows_and_files() const;
+  double seconds_without_checkpoints(double StageCost::*of) const;
+  double checkpoints_in(double seconds) const;
+  double with_checkpoints(double StageCost::*of) const;
+  double held_bytes() const;
+  double passing_bytes() const;
+  double bytes_of_a_row() const;
 };
 
 /// What a run is told beside its scene (see RunHooks).
 struct CostOptions {
   int threads = 1;
   double checkpoint_every = 60;  ///< s
+  /// Processor seconds for which each stage may be tried whose work is known only when the grains have run,
+  /// and which each stage on the way to it may take; if not said, usual_trial() and 3, and 6 in all.
+  std::optional<double> trial_seconds = {};
 };
 
 /// Throws Error as run_element_test does for bad input.

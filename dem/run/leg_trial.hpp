@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "grainlaw/dem/drive/stage.hpp"
 #include "grainlaw/dem/packing/state.hpp"
@@ -14,9 +15,11 @@ namespace grainlaw::dem {
 inline bool needs_trial(const Stage& stage) { return stage.leg.controlled() || stage.leg.minimises(); }
 
 struct LegCost {
-  double seconds = 0;  ///< of the whole leg, by the part that was run
-  double passes = 0;   ///< over the contacts, likewise
-  double bytes = 0;    ///< of a leg that minimises: held beside the grains while it does
+  double seconds = 0;             ///< of the whole leg, by the part that was run
+  double least = 0, most = 0;     ///< s: between which it mostly lies; both `seconds` where all of it was run
+  double passes = 0;              ///< over the contacts, likewise
+  double bytes = 0;               ///< of a leg that minimises: held beside the grains while it does
+  std::optional<State> end = {};  ///< the grains where it came to its end, of Likeness::all
 };
 
 /// What trial grains have in common with those of the scene.
@@ -26,11 +29,33 @@ enum class Likeness {
   all       ///< they are those that the leg begins with
 };
 
-/// Runs a stage that needs it for half a second, or, from the grains that it begins with, as a whole if it
-/// takes no more than 1.5 seconds: how a leg begins is not what it is like. None where that tells nothing:
-/// where more time is needed (for an increment, too), where the leg only waits for stresses, and where the
-/// grains bear none.
+/// How long a leg is tried unless one asks for more, in processor seconds.
+constexpr double usual_trial(Likeness like) { return like == Likeness::all ? 1.5 : 0.5; }
+
+/// Runs a stage for so many seconds, or as a whole if it takes no more. Of one that does not end, with p the
+/// share that was done in n passes and N the passes that are planned,
+///
+///   passes = n + (1 - p) r,   r = (n + w N)/(p + w),   w = 0.1:
+///
+/// the plan counts as much as a tenth of the leg that was seen. The rest is off by a factor of exp(e),
+/// mostly, with e^2 = (2 s)^2 + c^2/(p + w), s the standard error of the passes per share in eight equal
+/// pieces of what was seen, c = 0.2; of grains that are only as dense, all of it by another 0.6. How these
+/// numbers were found, and how often they held: docs/engine.md. None where a trial tells nothing: where the
+/// grains come no way along in that time (in no increment, too), where the leg only waits for stresses or
+/// loses one, and where the grains bear none.
 std::optional<LegCost> try_leg(const Material& material, const State& grains, const Stage& stage,
-                               Likeness like);
+                               Likeness like, double budget);
+
+/// A trial of a leg after any look: the share that was done and the passes until then, both rising.
+struct LegMark {
+  double share = 0, passes = 0;
+};
+
+struct LegPasses {
+  double all, least, most;
+};
+
+/// Passes of a whole leg of which `seen` was run and `planned` is the plan, by the equations above.
+LegPasses passes_of(const std::vector<LegMark>& seen, double planned, Likeness like);
 
 }  // namespace grainlaw::dem

@@ -20,7 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double trial_seconds = 0.15;  // of steps, at each density
-constexpr double largest_way = 0.01;    // strain of a component
+constexpr double shortest_way = 0.01;   // strain of a component, to and fro
+constexpr double longest_way = 0.3;     // at constant volume, if the leg goes so far
+constexpr double fast_step = 3e-6;      // strain of a step from which grains move otherwise than after a rest
+constexpr double flow_seconds = 0.4;    // at most, until the grains move as the flow makes them
 constexpr double moduli_seconds = 1;    // at each density, for states and the way from one to the next
 constexpr int fewest_states = 3, most_states = 12;
 constexpr std::uint64_t fewest_steps = 40, fewest_rows = 5, fewest_files = 3;
@@ -42,10 +45,25 @@ Mat3 stretch_of(const Leg& leg, const Mat3& gradient, double dt) {
   return exponential(dt * gradient);
 }
 
-/// How many make this strain; 0 where the box is at rest.
-std::uint64_t steps_of(double strain, const Mat3& gradient, double dt) {
+double fastest_of(const Mat3& gradient) {
   double fastest = 0;
   for (std::size_t k = 0; k < 9; ++k) fastest = std::max(fastest, std::abs(gradient.data()[k]));
+  return fastest;
+}
+
+/// How far the box is strained before it turns round: by as much as the leg does, where that leaves the
+/// density alone.
+double way_of(const Leg& leg, const Mat3& gradient) {
+  const double trace = gradient(0, 0) + gradient(1, 1) + gradient(2, 2);
+  if (std::abs(trace) > 1e-6 * fastest_of(gradient)) return shortest_way;
+  double strain = std::abs(leg.gamma.value_or(0));
+  for (const double component : leg.strain) strain = std::max(strain, std::abs(component));
+  return std::clamp(strain, shortest_way, longest_way);
+}
+
+/// How many make this strain; 0 where the box is at rest.
+std::uint64_t steps_of(double strain, const Mat3& gradient, double dt) {
+  const double fastest = fastest_of(gradient);
   if (!(fastest > 0)) return 0;
   return static_cast<std::uint64_t>(std::clamp(strain / (fastest * dt), 1.0, 1e15));
 }
@@ -94,7 +112,7 @@ Trial::Trial(const Material& material, const State& state, const Stage& stage)
       heap_before_(heap_bytes()),
       dynamics_(material, state) {
   cost_.nu = state.volume_fraction();
-  steps_a_way_ = steps_of(largest_way, gradient_, dt_);
+  steps_a_way_ = steps_of(way_of(stage.leg, gradient_), gradient_, dt_);
   dynamics_.start_flow(dt_, gradient_);
   step();
   cost_.engine_bytes = (heap_bytes() - heap_before_) / grains_;
@@ -109,6 +127,13 @@ void Trial::step() {
   }
   dynamics_.step(stretch_ * dynamics_.cell().edges(), gradient_);
   ++steps_gone_;
+}
+
+/// Half a way: where the box turns round, grains have fewer contacts.
+void Trial::flow_in() {
+  if (fastest_of(gradient_) * dt_ < fast_step) return;
+  const double begin = thread_seconds();
+  while (2 * steps_gone_ < steps_a_way_ && thread_seconds() - begin < flow_seconds) step();
 }
 
 void Trial::steps() {
@@ -132,19 +157,21 @@ void Trial::steps() {
 }
 
 /// Seconds of a call after each step and what comes before it, as in a test that writes rows: with what it
-/// needs no longer in the nearest caches.
+/// needs no longer in the nearest caches. What takes next to no time is not waited for.
 template <class Call, class Before>
 double Trial::seconds_between_steps(Call&& call, Before&& before) {
-  double spent = 0;
+  const double first = thread_seconds();
+  double spent = 0, end = first;
   std::uint64_t calls = 0;
   do {
     step();
     before();
     const double begin = thread_seconds();
     call();
-    spent += thread_seconds() - begin;
+    end = thread_seconds();
+    spent += end - begin;
     ++calls;
-  } while (spent < trial_seconds / 10 || calls < fewest_rows);
+  } while ((spent < trial_seconds / 10 && end - first < 2 * trial_seconds) || calls < fewest_rows);
   return spent / static_cast<double>(calls);
 }
 

@@ -64,6 +64,20 @@ TEST_F(Simulate, ExplainsAndMakesNothing) {
     EXPECT_TRUE(file.is_symlink() || !file.is_directory()) << file.path();
 }
 
+TEST_F(Simulate, ExplainsForAsLongAsItIsTold) {
+  write("s.json", R"({"preparation": {"count": 64, "nu": 0.7, "rate": 1e-2, "relax": {"duration": 50}},
+    "path": {"segments": [{"mode": "triaxial", "amount": 0.5}]}, "measure": {"rows": 2}})");
+  const Outcome brief = run({"simulate", "s.json", "--explain", "--explain-seconds", "0.05"});
+  ASSERT_EQ(brief.status, 0) << brief.err;
+  EXPECT_THAT(brief.out,
+              testing::ContainsRegex("triaxial \\(1 of 1\\) +from 0.7 .* about .* \\(.* to .*\\)"));
+  EXPECT_THAT(brief.out, testing::ContainsRegex("in all: .* about .* \\(.* to .*\\) of one core"));
+  EXPECT_TRUE(refuses(run({"simulate", "s.json", "-o", "out/x", "--explain-seconds", "1"}),
+                      {"--explain-seconds: is for --explain alone"}));
+  EXPECT_TRUE(refuses(run({"simulate", "s.json", "--explain", "--explain-seconds", "0"}),
+                      {"--explain-seconds: must be a number"}));
+}
+
 TEST_F(Simulate, NeedsAFolder) {
   write("s.json", scene("200"));
   EXPECT_TRUE(refuses(run({"simulate", "s.json"}), {"-o DIR is missing"}));

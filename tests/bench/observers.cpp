@@ -1,10 +1,15 @@
 // What observers cost, and whether grainlaw simulate --explain says so.
 // Usage: grainlaw_bench_observers [COUNT] [ROUNDS]
+//        grainlaw_bench_observers memory
 //
 // Prints the time of a whole test, measured and as explained; the bare scene against the kernel's own loop;
 // a step of the bare scene, a row of the standard columns and what each observer alone adds to a row,
 // measured and as explained; and the same test with each other option alone. Processor seconds of this
-// thread, medians over the rounds; ratios round by round, median and range.
+// thread, medians over the rounds; ratios round by round, median and range. With `memory`, the most memory of
+// runs against what --explain says, each run in a process of its own. Steps and rows are explained by trials
+// alone, as of scenes too long to be run to be explained.
+#include <malloc.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,6 +28,7 @@
 #include "grainlaw/dem/observe/names.hpp"
 #include "grainlaw/dem/run/cost.hpp"
 #include "grainlaw/dem/run/element_test.hpp"
+#include "grainlaw/dem/run/leg_trial.hpp"
 #include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/step/dynamics.hpp"
 #include "grainlaw/element/error.hpp"
@@ -37,6 +43,7 @@ constexpr double begun_strain = 0.002;  // what is left beyond it is steps alone
 constexpr double short_strain =
     0.0024;  // to compare rows: there is one after every other step, and as many steps without
 constexpr std::int64_t rows = 500;
+constexpr dem::CostOptions by_trial{1, 60, 1e-3};  // nothing is run as a whole
 
 double median(std::vector<double> list) {
   std::sort(list.begin(), list.end());
@@ -84,17 +91,22 @@ double seconds_of_kernel(const dem::Scene& test, const fs::path& snapshot) {
   return dem::thread_seconds() - begin;
 }
 
+/// The number that a process of its own prints.
+double answer_of(const std::string& command) {
+  std::FILE* const child = ::popen(command.c_str(), "r");
+  double number = 0;
+  const bool told = child != nullptr && std::fscanf(child, "%lf", &number) == 1;
+  if (child != nullptr) ::pclose(child);
+  if (!told) throw Error("no answer from: " + command);
+  return number;
+}
+
 /// Seconds of the bare scene ("bare") or of the kernel's loop ("kernel"), in a process of its own: where
 /// arrays lie depends on what a process did before, and that makes some percent.
 double seconds_apart(const std::string& what, const fs::path& snapshot, double strain) {
   const std::string command = "'" + fs::read_symlink("/proc/self/exe").string() + "' --apart " + what + " '" +
                               snapshot.string() + "' " + std::to_string(strain);
-  std::FILE* const child = ::popen(command.c_str(), "r");
-  double seconds = 0;
-  const bool told = child != nullptr && std::fscanf(child, "%lf", &seconds) == 1;
-  if (child != nullptr) ::pclose(child);
-  if (!told) throw Error("no answer from: " + command);
-  return seconds;
+  return answer_of(command);
 }
 
 /// What that process does.
@@ -114,7 +126,7 @@ void compare_preparation(const std::string& count, const fs::path& dir) {
     "relax": {"tolerance": 1e-300, "duration": 100}}, "path": {"segments": [
       {"mode": "iso", "controls": {"nu": 0.75}, "rate": 2e-4}, {"mode": "relax", "tolerance": 1e-300, "duration": 300},
       {"mode": "d2", "amount": 0.02, "rate": 1e-4}]}, "measure": {"rows": 1, "snapshots": [{"segment": 2}]}})");
-  const double said = dem::cost_of(prepare).seconds();
+  const double said = dem::cost_of(prepare, by_trial).seconds();
   const double begin = dem::thread_seconds();
   const auto summary = dem::run_element_test(prepare, dir);
   const double spent = dem::thread_seconds() - begin;
@@ -149,6 +161,68 @@ std::map<std::string, dem::Scene> options(const fs::path& snapshot) {
           {"quasistatic", with(R"({"mode": "d2", "amount": 0.02, "profile": "quasistatic"})", "")}};
 }
 
+constexpr std::int64_t memory_grains = 60000, empty_grains = 100;
+
+/// What holds memory, each alone: name, threads and scene. The flow is fast, for memory does not mind.
+struct MemoryCase {
+  std::string name;
+  int threads;
+  dem::Scene test;
+};
+
+std::vector<MemoryCase> memory_cases(std::int64_t grains) {
+  const auto with = [&](const std::string& segment, const std::string& measure) {
+    return scene(R"({"material": {"w": 3}, "preparation": {"count": )" + std::to_string(grains) +
+                 R"(, "nu": 0.8, "rate": 0.2, "relax": {"tolerance": 1e-300, "duration": 1}},
+      "path": {"segments": [)" +
+                 segment + R"(]}, "measure": {"rows": 3)" + measure + "}}");
+  };
+  const std::string iso = R"({"mode": "iso", "controls": {"nu": 0.82}, "rate": 0.01})";
+  dem::Scene all = with(iso, "");
+  all.measure.observe = dem::observe::names();
+  return {{"bare", 1, with(iso, "")},
+          {"2 threads", 2, with(iso, "")},
+          {"a snapshot", 1, with(iso, R"(, "snapshots": [{"segment": 0}])")},
+          {"nonaffine", 1, with(iso, R"(, "observe": ["nonaffine"])")},
+          {"all observers", 1, all},
+          {"moduli", 1, with(iso, R"(, "moduli": [{"segment": 0}])")},
+          {"quasistatic", 1, with(iso + R"(, {"mode": "relax", "residual": 1e-3})", "")}};
+}
+
+/// The most memory of a run in a process of its own, in bytes.
+double peak_apart(std::int64_t grains, std::size_t of, const fs::path& dir) {
+  const std::string command = "'" + fs::read_symlink("/proc/self/exe").string() + "' --memory " +
+                              std::to_string(grains) + " " + std::to_string(of) + " '" + dir.string() + "'";
+  return answer_of(command);
+}
+
+int answer_memory(std::int64_t grains, std::size_t of, const fs::path& dir) {
+  const MemoryCase one = memory_cases(grains).at(of);
+  dem::RunHooks hooks;
+  hooks.threads = one.threads;
+  dem::run_element_test(one.test, dir, hooks);
+  fs::remove_all(dir);
+  rusage used{};
+  ::getrusage(RUSAGE_SELF, &used);
+  std::printf("%.9g\n", 1024 * static_cast<double>(used.ru_maxrss));
+  return 0;
+}
+
+/// Peaks beyond those of the same run with next to no grains, and what --explain says.
+void compare_memory(const fs::path& dir) {
+  std::printf("memory of %lld grains:     measured MB explained MB ratio\n",
+              static_cast<long long>(memory_grains));
+  const std::vector<MemoryCase> cases = memory_cases(memory_grains);
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    const double empty = peak_apart(empty_grains, k, dir), whole = peak_apart(memory_grains, k, dir);
+    // Little is run: memory is known from the trials, and from the runs above what is held.
+    const double said = dem::cost_of(cases[k].test, {cases[k].threads, 60, 1.0}).bytes();
+    std::printf("%-24s %12.1f %12.1f %6.2f\n", cases[k].name.c_str(), 1e-6 * (whole - empty), 1e-6 * said,
+                said / (whole - empty));
+    std::fflush(stdout);
+  }
+}
+
 /// One round: each scene once, and once what --explain says of it.
 void measure_round(const fs::path& snapshot, const fs::path& dir, std::uint64_t& steps, Times& spent,
                    Times& said) {
@@ -167,13 +241,13 @@ void measure_round(const fs::path& snapshot, const fs::path& dir, std::uint64_t&
   spent["bare"].push_back(run);
   spent["kernel going on"].push_back(kernel - kernel_begun);
   spent["bare going on"].push_back(run - run_begun);
-  said["bare"].push_back(dem::cost_of(bare).seconds());
+  said["bare"].push_back(dem::cost_of(bare, by_trial).seconds());
   const double without = seconds_to_run(shear(snapshot, short_strain, 1), dir);
   const double standard = seconds_to_run(shear(snapshot, short_strain, rows), dir);
   spent["standard columns"].push_back((standard - without) / static_cast<double>(rows - 1));
   dem::Scene all = shear(snapshot, short_strain, rows);
   all.measure.observe = dem::observe::names();
-  const dem::SceneCost cost = dem::cost_of(all);
+  const dem::SceneCost cost = dem::cost_of(all, by_trial);
   said["standard columns"].push_back(cost.row_seconds);
   for (const auto& observer : cost.observers) {
     // Each beside its own run without: a machine's speed drifts within a round.
@@ -184,7 +258,8 @@ void measure_round(const fs::path& snapshot, const fs::path& dir, std::uint64_t&
   }
   for (const auto& [name, test] : options(snapshot)) {
     spent[name].push_back(seconds_to_run(test, dir));
-    said[name].push_back(dem::cost_of(test).seconds());
+    const bool told_by_trial = !dem::needs_trial(stage_of(test, dem::read_frame(snapshot, {})));
+    said[name].push_back(dem::cost_of(test, told_by_trial ? by_trial : dem::CostOptions{}).seconds());
   }
 }
 
@@ -224,11 +299,19 @@ void print(const Times& spent, const Times& said, std::uint64_t steps, const fs:
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);  // as grainlaw does
+  if (argc == 5 && std::string(argv[1]) == "--memory")
+    return answer_memory(std::atoll(argv[2]), static_cast<std::size_t>(std::atoll(argv[3])), argv[4]);
   if (argc == 5 && std::string(argv[1]) == "--apart") return answer(argv[2], argv[3], std::atof(argv[4]));
   const std::string count = argc > 1 ? argv[1] : "2000";
   const int rounds = argc > 2 ? std::atoi(argv[2]) : 5;
   const fs::path dir = fs::temp_directory_path() / ("grainlaw-bench-observers-" + std::to_string(::getpid()));
   fs::create_directories(dir);
+  if (count == "memory") {
+    compare_memory(dir / "memory");
+    fs::remove_all(dir);
+    return 0;
+  }
   compare_preparation(count, dir / "prepare");
   Times spent, said;
   std::uint64_t steps = 0;

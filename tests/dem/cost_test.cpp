@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/run/element_test.hpp"
@@ -51,12 +53,20 @@ TEST(Cost, OfASceneAgainstItsRun) {
   }
   // A table is kept in memory until it is written: row, and five columns, of 20 bins.
   EXPECT_GE(cost.observers[1].bytes, 15 * 20 * 6 * 8);
-  double fields = 0;
-  for (const FieldCost& field : cost.fields) fields += field.bytes_per_grain;
+  double fields = 0, held = 0;
+  for (const FieldCost& field : cost.fields) {
+    fields += field.bytes_per_grain;
+    held += field.passing ? 0 : field.bytes_per_grain;
+  }
   if (std::isnan(heap_bytes())) {
     EXPECT_TRUE(std::isnan(cost.bytes())) << cost.bytes();
   } else {
-    EXPECT_NEAR(cost.bytes(), 64 * fields + cost.observers[0].bytes + cost.observers[1].bytes, 1e-6);
+    // Both walk the contacts, gathered once; percolation's clusters are gone when radius looks.
+    const auto& [percolation, radius] = std::tie(cost.observers[0], cost.observers[1]);
+    EXPECT_GT(percolation.network_bytes, 0);
+    EXPECT_EQ(percolation.network_bytes, radius.network_bytes);
+    EXPECT_NEAR(cost.bytes(),
+                64 * held + radius.kept_bytes + std::max(64 * (fields - held), percolation.bytes), 1e-6);
   }
 }
 
@@ -95,7 +105,7 @@ TEST(Cost, OfAFastLegInASmallBox) {
 TEST(Cost, ThreadsHoldGrainsOfTheirOwn) {
   const Scene scene = scene_of(R"({"preparation": {"count": 300, "nu": 0.7},
     "path": {"segments": [{"mode": "d2", "amount": 0.001}]}, "measure": {"rows": 1}})");
-  const double one = cost_of(scene).bytes(), two = cost_of(scene, {2, 60}).bytes();
+  const double one = cost_of(scene, {1, 60, 1e-6}).bytes(), two = cost_of(scene, {2, 60, 1e-6}).bytes();
   if (std::isnan(heap_bytes())) {
     EXPECT_TRUE(std::isnan(one) && std::isnan(two)) << one << ' ' << two;
     return;
@@ -129,6 +139,57 @@ TEST(Cost, OfFilesAgainstThoseOfARun) {
   EXPECT_NEAR(static_cast<double>(fs::file_size(dir / "checkpoint.bin")), cost.checkpoint_bytes,
               0.2 * cost.checkpoint_bytes);
   fs::remove_all(dir);
+}
+
+/// From a snapshot, stages whose steps are known only when the grains have run are run one after the other,
+/// those between them too: with time enough, their passes are those of the run.
+TEST(Cost, StagesThatAreTriedAsAWholeTakeWhatTheirRunTakes) {
+  const fs::path dir = fs::temp_directory_path() / ("grainlaw-cost-chain-" + std::to_string(::getpid()));
+  run_element_test(scene_of(R"({"preparation": {"count": 64, "rate": 2e-3, "relax": {"duration": 5}},
+    "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.75}, "rate": 1e-3}]},
+    "measure": {"rows": 1, "snapshots": [{"segment": 0}]}})"),
+                   dir / "packing");
+  const Scene scene = scene_of(R"({"preparation": {"snapshot": ")" + (dir / "packing/snapshots.h5").string() +
+                               R"("}, "path": {"segments": [{"mode": "relax", "residual": 1e-6},
+      {"mode": "triaxial", "amount": 0.002, "rate": 1e-4}]}, "measure": {"rows": 2}})");
+  CostOptions options;
+  options.trial_seconds = 1000;
+  const SceneCost cost = cost_of(scene, options);
+  const RunSummary run = run_element_test(scene, dir / "run");
+  EXPECT_DOUBLE_EQ(cost.particle_steps(), static_cast<double>(run.particle_steps));
+  for (const StageCost& stage : cost.stages) EXPECT_TRUE(stage.tried) << stage.stage.name;
+  EXPECT_EQ(cost.least(), cost.most());
+  fs::remove_all(dir);
+}
+
+/// Whatever the flow does to its lists, a short one is run: here one so fast that the grains fly.
+TEST(Cost, AShortSceneIsRunFromItsBeginning) {
+  const Scene scene = scene_of(R"({
+    "preparation": {"count": 64, "rate": 2e-2, "relax": {"tolerance": 1e-2, "duration": 2000}},
+    "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.7}, "rate": 1e-2},
+      {"mode": "d2", "amount": 0.01, "rate": 1e-2}]}, "measure": {"rows": 1}})");
+  const SceneCost run = cost_of(scene), planned = cost_of(scene, {1, 60, 1e-6});
+  for (const StageCost& stage : run.stages) EXPECT_TRUE(stage.tried) << stage.stage.name;
+  for (const StageCost& stage : planned.stages) EXPECT_FALSE(stage.tried) << stage.stage.name;
+  // How early the relaxation ends is known only so.
+  EXPECT_LT(run.stages[1].passes, planned.stages[1].passes);
+  EXPECT_EQ(run.stages[2].passes, planned.stages[2].passes);
+}
+
+/// The range of each stage goes into that of the whole; a relaxation may end at once.
+TEST(Cost, RangesAddUp) {
+  SceneCost cost = cost_of(scene_of(R"({"preparation": {"count": 64, "nu": 0.7},
+    "path": {"segments": [{"mode": "d2", "amount": 0.01}]}, "measure": {"rows": 1}})"),
+                           {1, 60, 1e-6});  // too little to run any stage
+  ASSERT_EQ(cost.stages.size(), 3u);
+  EXPECT_EQ(cost.stages[1].least, 0);
+  EXPECT_NEAR(cost.seconds() - cost.least(), cost.stages[1].seconds, 1e-9 * cost.seconds());
+  EXPECT_EQ(cost.most(), cost.seconds());
+  cost.stages[2].least = 0.5 * cost.stages[2].seconds;
+  cost.stages[2].most = 3 * cost.stages[2].seconds;
+  EXPECT_NEAR(cost.seconds() - cost.least(), cost.stages[1].seconds + 0.5 * cost.stages[2].seconds,
+              1e-9 * cost.seconds());
+  EXPECT_NEAR(cost.most() - cost.seconds(), 2 * cost.stages[2].seconds, 1e-9 * cost.seconds());
 }
 
 TEST(Cost, RefusesWhatARunRefuses) {

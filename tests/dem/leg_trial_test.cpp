@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <vector>
 
 #include "grainlaw/dem/balance/minimise.hpp"
+#include "grainlaw/dem/numbers/random.hpp"
 #include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/scene/scene.hpp"
 #include "packings.hpp"
@@ -34,9 +36,11 @@ State balanced(const Material& material, double at_nu) {
   return packing.state();
 }
 
-std::optional<LegCost> tried(const std::string& segment, double at_nu, Likeness like) {
+std::optional<LegCost> tried(const std::string& segment, double at_nu, Likeness like,
+                             std::optional<double> budget = {}) {
   const Material material;
-  return try_leg(material, balanced(material, at_nu), stage_of(segment), like);
+  return try_leg(material, balanced(material, at_nu), stage_of(segment), like,
+                 budget.value_or(usual_trial(like)));
 }
 
 TEST(LegTrial, OnlyWhatDependsOnTheGrainsNeedsOne) {
@@ -75,9 +79,71 @@ TEST(LegTrial, NothingIsToldWhereALegWaitsOrGrainsBearNothing) {
   EXPECT_FALSE(tried(R"({"mode": "biaxial", "amount": 0.01})", 0.3, Likeness::density));
 }
 
-TEST(LegTrial, AWholeLegOrNone) {
-  EXPECT_TRUE(tried(R"({"mode": "d2", "amount": 1e-4, "profile": "steered"})", nu, Likeness::all));
-  EXPECT_FALSE(tried(R"({"mode": "biaxial", "amount": 0.5, "rate": 1e-8})", nu, Likeness::all));
+/// From the grains that it begins with, a leg is told by its part where it does not end within its time.
+TEST(LegTrial, AWholeLegOrByItsPart) {
+  const auto whole = tried(R"({"mode": "d2", "amount": 1e-4, "profile": "steered"})", nu, Likeness::all);
+  ASSERT_TRUE(whole && whole->end);
+  EXPECT_EQ(whole->least, whole->seconds);
+  EXPECT_EQ(whole->most, whole->seconds);
+  const auto part = tried(R"({"mode": "biaxial", "amount": 0.5})", nu, Likeness::all, 0.1);
+  ASSERT_TRUE(part);
+  EXPECT_FALSE(part->end);
+  EXPECT_GT(part->seconds, 0.1);
+  EXPECT_LT(part->least, part->seconds);
+  EXPECT_GT(part->most, part->seconds);
+}
+
+/// What more time buys: the same leg, of which a part was told, as a whole.
+TEST(LegTrial, WithMoreTimeALegIsTriedAsAWhole) {
+  const std::string segment = R"({"mode": "biaxial", "amount": 0.02})";
+  const auto part = tried(segment, nu, Likeness::all, 0.02);
+  const auto whole = tried(segment, nu, Likeness::all, 1000);
+  ASSERT_TRUE(part && whole);
+  EXPECT_FALSE(part->end);
+  ASSERT_TRUE(whole->end);
+  EXPECT_GT(part->most, part->least);
+  EXPECT_EQ(whole->most, whole->least);
+}
+
+std::vector<LegMark> even(double share, double passes) {
+  std::vector<LegMark> seen;
+  for (int k = 1; k <= 100; ++k) seen.push_back({share * k / 100, passes * k / 100});
+  return seen;
+}
+
+/// Where the grains do as planned, so does the rest; the plan counts as a tenth of the leg.
+TEST(LegTrial, PartsAreExtrapolatedTowardsThePlan) {
+  const LegPasses as_planned = passes_of(even(0.5, 500), 1000, Likeness::all);
+  const double e = 0.2 / std::sqrt(0.6);
+  EXPECT_NEAR(as_planned.all, 1000, 1e-9);
+  EXPECT_NEAR(as_planned.least, 500 + 500 * std::exp(-e), 1e-6);
+  EXPECT_NEAR(as_planned.most, 500 + 500 * std::exp(e), 1e-6);
+  EXPECT_NEAR(passes_of(even(0.1, 300), 1000, Likeness::all).all, 300 + 0.9 * (300 + 100) / 0.2, 1e-9);
+  const LegPasses as_dense = passes_of(even(0.5, 500), 1000, Likeness::density);
+  EXPECT_NEAR(as_dense.most / as_dense.all, std::exp(std::hypot(0.5 * e, 0.6)), 1e-9);
+  EXPECT_NEAR(as_dense.all / as_dense.least, as_dense.most / as_dense.all, 1e-9);
+}
+
+/// Cost that comes in bursts widens the range, and independent bursts stay in it.
+TEST(LegTrial, RangesHoldForIndependentBursts) {
+  int held = 0, widened = 0;
+  constexpr int legs = 400;
+  Random random(5);
+  for (int leg = 0; leg < legs; ++leg) {
+    std::vector<LegMark> marks;
+    double passes = 0;
+    for (int k = 1; k <= 100; ++k) {
+      passes += random.uniform() < 0.1 ? 60 : 4;  // 9.6 in the mean
+      marks.push_back({0.01 * k, passes});
+    }
+    const LegPasses told = passes_of({marks.begin(), marks.begin() + 30}, 960, Likeness::all);
+    held += told.least <= passes && passes <= told.most ? 1 : 0;
+    const LegPasses smooth = passes_of(even(0.3, marks[29].passes), 960, Likeness::all);
+    EXPECT_GE(told.most, smooth.most);
+    widened += told.most > 1.1 * smooth.most ? 1 : 0;
+  }
+  EXPECT_GT(widened, legs / 2);
+  EXPECT_GT(held, 0.9 * legs);
 }
 
 /// A leg of one increment is told whatever it takes, and by how many passes.
@@ -85,7 +151,7 @@ TEST(LegTrial, OneIncrementIsAWholeLeg) {
   const Material material;
   const Stage stage = stage_of(R"({"mode": "relax", "residual": 1e-9})");
   ASSERT_EQ(stage.stepping.steps, 1u);
-  const auto cost = try_leg(material, test::squeezed(material, 200, 3, nu), stage, Likeness::all);
+  const auto cost = try_leg(material, test::squeezed(material, 200, 3, nu), stage, Likeness::all, 1.5);
   ASSERT_TRUE(cost);
   EXPECT_GT(cost->passes, 100);
   EXPECT_GT(cost->seconds, 0);
@@ -95,7 +161,7 @@ TEST(LegTrial, OneIncrementIsAWholeLeg) {
 TEST(LegTrial, AnIncrementThatTakesTooLongIsLeft) {
   const Material material;
   const Stage stage = stage_of(R"({"mode": "relax", "residual": 1e-12})");
-  EXPECT_FALSE(try_leg(material, test::squeezed(material, 20000, 3, 0.66), stage, Likeness::density));
+  EXPECT_FALSE(try_leg(material, test::squeezed(material, 20000, 3, 0.66), stage, Likeness::density, 0.5));
 }
 
 }  // namespace
