@@ -56,8 +56,7 @@ double fastest_of(const Mat3& gradient) {
 double way_of(const Leg& leg, const Mat3& gradient) {
   const double trace = gradient(0, 0) + gradient(1, 1) + gradient(2, 2);
   if (std::abs(trace) > 1e-6 * fastest_of(gradient)) return shortest_way;
-  double strain = std::abs(leg.gamma.value_or(0));
-  for (const double component : leg.strain) strain = std::max(strain, std::abs(component));
+  const double strain = std::max(std::abs(leg.gamma.value_or(0)), largest_component(leg.strain));
   return std::clamp(strain, shortest_way, longest_way);
 }
 
