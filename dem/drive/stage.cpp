@@ -148,7 +148,8 @@ class KnownBox {
  public:
   explicit KnownBox(const Mat3& edges) : edges_(edges) {}
 
-  /// Whether anything is still known on this leg. Then `narrowest_on_leg` may be asked for, and `leave` is next.
+  /// Whether anything is still known on this leg. Then `narrowest_on_leg` may be asked for, and `leave` is
+  /// next.
   bool enter(const Leg& leg) {
     if (leg.control.mean || leg.control.shear_by_stress()) return false;
     for (std::size_t c = 0; c < 3; ++c)
