@@ -118,6 +118,7 @@ void add_errors(const Sweep& sweep, const RunFolder& folder, std::vector<BenchEr
     for (const auto& groups : runs) columns.push_back(column(groups, quantity));
     std::vector<const Groups*> all;
     for (const Groups& groups : columns) all.push_back(&groups);
+    const Series of_reference = variance_of(sweep.knob, columns.back(), all);
     for (std::size_t i = 0; i < variants.size(); ++i) {
       const bool finest = i + 1 == variants.size();
       const Series variance = variance_of(sweep.knob, columns[i], all);
@@ -126,7 +127,7 @@ void add_errors(const Sweep& sweep, const RunFolder& folder, std::vector<BenchEr
                       quantity,    cost.runs,  cost.particle_steps,
                       cost.core_s, {},         0,
                       0,           finest};
-      if (!finest) line.comparison = compare(columns[i], columns.back(), variance);
+      if (!finest) line.comparison = compare(columns[i], columns.back(), variance, of_reference);
       const double size = size_of(columns.back());
       line.scatter = root_mean_square(variance) / size;
       line.packings = compares_packings(sweep.knob)
@@ -155,7 +156,8 @@ bool good_enough(const BenchError& line, Judge judge) {
 
 }  // namespace
 
-Comparison compare(const Groups& runs, const Groups& reference, const Series& variance) {
+Comparison compare(const Groups& runs, const Groups& reference, const Series& variance,
+                   const Series& of_reference) {
   std::vector<Series> differences, means;
   for (std::size_t g = 0; g < reference.size(); ++g) {
     const Series mine = mean_of(runs.at(g));
@@ -164,14 +166,14 @@ Comparison compare(const Groups& runs, const Groups& reference, const Series& va
     for (std::size_t i = 0; i < mine.size(); ++i) differences.back()[i] -= means.back()[i];
   }
   const Series d = mean_of(differences), m = mean_of(means);
-  const double share = mean_share(runs) + mean_share(reference);
+  const double share = mean_share(runs), reference_share = mean_share(reference);
   Series d2, m2, chance;
   double sum_d = 0, sum_m = 0;
   for (std::size_t i = 0; i < d.size(); ++i) {
     if (!std::isfinite(d[i])) continue;  // C_star where no grain bears load
     d2.push_back(d[i] * d[i]);
     m2.push_back(m[i] * m[i]);
-    chance.push_back(share * variance.at(i));
+    chance.push_back(share * variance.at(i) + reference_share * of_reference.at(i));
     sum_d += d[i];
     sum_m += m[i];
   }

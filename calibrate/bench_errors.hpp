@@ -22,8 +22,9 @@ struct Comparison {
   double offset = 0;  ///< mean of d over mean of m: with a sign
 };
 
-/// `variance` is that of a single run about its group's mean, row by row.
-Comparison compare(const Groups& runs, const Groups& reference, const Series& variance);
+/// `variance`, `of_reference`: of a single run about its group's mean, row by row.
+Comparison compare(const Groups& runs, const Groups& reference, const Series& variance,
+                   const Series& of_reference);
 /// The variance within the groups of all sets together, row by row; NaN where no group has two runs.
 Series pooled_variance(const std::vector<const Groups*>& sets);
 /// The variance of one run of one group about the mean over groups, row by row: that between the groups and

@@ -249,8 +249,13 @@ void Runner::handle(const Ending& ending) {
   if (options_.hooks.finished) options_.hooks.finished({jobs_[ending.job].record, summary}, progress());
 }
 
+/// Errors of a scene begin with its file, which in a campaign is the record's name and is said anyway.
+std::string without_name(const std::string& error, const std::string& record) {
+  return error.starts_with(record + ": ") ? error.substr(record.size() + 2) : error;
+}
+
 void Runner::handle_failure(std::size_t job, const Failure& failure) {
-  FailedJob failed{jobs_[job].record, failure.error, {}};
+  FailedJob failed{jobs_[job].record, without_name(failure.error, jobs_[job].record), {}};
   {
     const std::lock_guard lock(mutex_);
     for (const std::size_t i : schedule_.fail(job)) failed.skipped.push_back(jobs_[i].record);

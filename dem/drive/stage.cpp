@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "grainlaw/dem/drive/controlled_drive.hpp"
@@ -224,21 +225,24 @@ void check_width(const std::vector<Stage>& stages, const State& start, const Sce
   const double largest = *std::max_element(start.radius.begin(), start.radius.end()),
                least = least_width(largest, scene.material.r_mean);
   KnownBox box(start.box);
+  std::map<std::string, int> times;  // that a segment has been run, for those that are repeated
   for (const Stage& stage : stages) {
     if (!box.enter(stage.leg)) return;
+    const std::string key = stage.segment ? scene.path.segments.at(*stage.segment).key : "preparation";
+    const int time = ++times[key];
     const std::optional<double> narrowest = box.narrowest_on_leg(least);
     const auto refuse = [&](const std::string& why) {
-      throw Error(scene.file, stage.segment ? scene.path.segments.at(*stage.segment).key : "preparation",
-                  why);
+      throw Error(scene.file, key,
+                  (time > 1 ? "repeated for the " + std::to_string(time) + ". time, " : "") + why);
     };
     if (!narrowest)
       refuse("tilts the box until its edges, which are never flipped, span more than " +
              short_text(largest_skew, 2) +
              " times its volume, so that their numbers no longer hold it; strain less");
     if (stage.segment && *narrowest < least)
-      refuse("makes the box " + to_text(*narrowest) + " mm wide, too narrow for a grain of diameter " +
-             to_text(2 * largest) + " mm (it would touch its own image); must stay >= " + to_text(least) +
-             " mm: take more grains or less strain");
+      refuse("makes the box " + short_text(*narrowest, 6) + " mm wide, too narrow for a grain of diameter " +
+             short_text(2 * largest, 6) + " mm (it would touch its own image); must stay >= " +
+             short_text(least, 6) + " mm: take more grains or less strain");
     box.leave();
   }
 }

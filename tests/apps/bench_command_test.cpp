@@ -9,6 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 class BenchCommand : public Program {
  protected:
@@ -19,7 +20,8 @@ class BenchCommand : public Program {
 TEST_F(BenchCommand, WritesTablePictureAndPageAndGoesOn) {
   const Outcome first = run(tiny);
   ASSERT_EQ(first.status, 0) << first.err;
-  EXPECT_THAT(first.out, HasSubstr("cheapest settings"));
+  EXPECT_THAT(first.out, HasSubstr("cheapest settings whose error chance explains"));
+  EXPECT_THAT(first.out, Not(HasSubstr("packings differ")));  // there is one
   const Json result = load_json(folder / "b/speed-against-error.json");
   EXPECT_EQ(result.at("errors").size(), 5u * (2 + 4));  // values times quantities of ISO and of D2
   for (const Json& entry : result.at("errors")) {
@@ -47,6 +49,18 @@ TEST_F(BenchCommand, WritesTablePictureAndPageAndGoesOn) {
   EXPECT_TRUE(refuses(run(tiny), {"holds this bench already", "--resume"}));
   again[3] = "33";
   EXPECT_TRUE(refuses(run(again), {"another bench", "count"}));
+}
+
+TEST_F(BenchCommand, SeveralPackingsTellWhatOneTestIsWorth) {
+  Arguments two = tiny;
+  two[7] = "2";
+  const Outcome outcome = run(two);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("less than packings differ"));
+  EXPECT_THAT(outcome.out, HasSubstr("chance explains, for means over many tests"));
+  for (const Json& entry : load_json(folder / "b/speed-against-error.json").at("errors"))
+    EXPECT_GT(entry.at("packings").get<double>(), entry.at("scatter").get<double>());
+  EXPECT_THAT(read("b/speed-against-error.svg"), HasSubstr("rgb(119, 119, 119)"));
 }
 
 TEST_F(BenchCommand, ModelWritesItsTableAndPicture) {

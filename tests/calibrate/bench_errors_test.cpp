@@ -18,11 +18,11 @@ namespace fs = std::filesystem;
 
 TEST(BenchErrors, CompareGivesDeviationAndOffset) {
   const Groups reference{{{2, 4}}}, runs{{{2.6, 3.4}}};
-  const Comparison c = compare(runs, reference, {0, 0});
+  const Comparison c = compare(runs, reference, {0, 0}, {0, 0});
   EXPECT_NEAR(c.error, std::sqrt((0.36 + 0.36) / (4 + 16)), 1e-12);
   EXPECT_NEAR(c.offset, 0, 1e-12);
   EXPECT_EQ(c.band, 0);
-  EXPECT_NEAR(compare({{{2.2, 4.4}}}, reference, {0, 0}).offset, 0.1, 1e-12);
+  EXPECT_NEAR(compare({{{2.2, 4.4}}}, reference, {0, 0}, {0, 0}).offset, 0.1, 1e-12);
 }
 
 TEST(BenchErrors, CompareTakesPackingsApart) {
@@ -31,13 +31,19 @@ TEST(BenchErrors, CompareTakesPackingsApart) {
   const Groups runs{{{2, 2}, {4, 4}}, {{12, 12}, {14, 14}}};
   const Series variance = pooled_variance({&reference, &runs});
   EXPECT_EQ(variance, (Series{2, 2}));  // four pairs that are 2 apart
-  const Comparison c = compare(runs, reference, variance);
+  const Comparison c = compare(runs, reference, variance, variance);
   EXPECT_NEAR(c.error, 1.0 / 7, 1e-12);
   EXPECT_NEAR(c.band, std::sqrt(2 * (0.25 + 0.25)) / 7, 1e-12);
 }
 
+TEST(BenchErrors, ChanceComesFromBothSides) {
+  // Four runs of variance 3 against two of variance 1, at a mean of 2: sqrt(3/4 + 1/2)/2.
+  const Groups runs{{{2}, {2}, {2}, {2}}}, reference{{{2}, {2}}};
+  EXPECT_NEAR(compare(runs, reference, {3}, {1}).band, std::sqrt(0.75 + 0.5) / 2, 1e-12);
+}
+
 TEST(BenchErrors, ARowWithoutValueIsLeftOut) {
-  const Comparison c = compare({{{2, std::nan("")}}}, {{{1, std::nan("")}}}, {0, std::nan("")});
+  const Comparison c = compare({{{2, std::nan("")}}}, {{{1, std::nan("")}}}, {0, std::nan("")}, {0, 0});
   EXPECT_NEAR(c.error, 1, 1e-12);
 }
 
@@ -59,7 +65,8 @@ Groups noise(std::mt19937& generator, std::size_t groups, std::size_t runs) {
 TEST(BenchErrors, ChanceAloneMakesAnErrorAsLargeAsTheBand) {
   std::mt19937 generator(1);
   const Groups a = noise(generator, 2, 3), b = noise(generator, 2, 3);
-  const Comparison c = compare(a, b, pooled_variance({&a, &b}));
+  const Series variance = pooled_variance({&a, &b});
+  const Comparison c = compare(a, b, variance, variance);
   // 400 rows: the ratio scatters by 1/sqrt(800) from the error and by less from the band.
   EXPECT_NEAR(c.error / c.band, 1, 0.15);
   EXPECT_NEAR(c.band, 0.1 * std::sqrt(1.0 / 6 + 1.0 / 6), 0.005);
@@ -133,6 +140,12 @@ TEST(BenchErrors, FewerGrainsAreNotRecommendedForScatteringMore) {
   EXPECT_EQ(recommend(lines, Judge::chance).at(0).value, 250);
 }
 
+TEST(BenchErrors, AMethodIsNotRecommended) {
+  std::vector<BenchError> lines{line(Knob::method, 1e-4, 1, 0.005), line(Knob::method, 0, 16, 0, true)};
+  for (BenchError& e : lines) e.packings = 0.05;
+  for (const Judge judge : {Judge::chance, Judge::one_packing}) EXPECT_TRUE(recommend(lines, judge).empty());
+}
+
 TEST(BenchErrors, OneTestIsHeldAgainstTheScatterOfPackings) {
   std::vector<BenchError> lines{line(Knob::rate, 3, 1, 0.06), line(Knob::rate, 1, 3, 0.04),
                                 line(Knob::rate, 0.3, 10, 0.01), line(Knob::rate, 0.1, 30, 0, true)};
@@ -190,6 +203,38 @@ TEST_F(BenchFolder, ReadsWhatIsThereAndLeavesOutWhatIsNot) {
   EXPECT_NEAR(errors[1].comparison.error, 0, 1e-9);
   const std::string csv = to_csv(errors);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + static_cast<long>(errors.size()));
+}
+
+TEST_F(BenchFolder, SaysWhatPackingsScatter) {
+  Bench bench;
+  bench.knobs = {Knob::time_step};
+  const Sweep iso = sweeps(bench).front();
+  for (const Variant& variant : iso.variants) {
+    const double twins[2][2] = {{0.01, 0.03}, {0.11, 0.13}};
+    for (std::size_t p = 0; p < 2; ++p)
+      for (std::size_t t = 0; t < 2; ++t) write(variant.records[p][t], twins[p][t]);
+  }
+  const auto errors = bench_errors(bench, folder);
+  EXPECT_NEAR(errors.at(0).packings, std::sqrt(51.0) / 7, 1e-12);
+  EXPECT_NEAR(errors[0].scatter, std::sqrt(2.0) / 7, 1e-12);
+  EXPECT_NE(to_csv(errors).find(",scatter,packings\n"), std::string::npos);
+  EXPECT_NE(to_csv(errors).find(",0.202031,1.0202\n"), std::string::npos);
+  EXPECT_NEAR(to_json(errors).at(0).at("packings").get<double>(), std::sqrt(51.0) / 7, 1e-12);
+}
+
+TEST_F(BenchFolder, FewAndManyGrainsScatterEachByThemselves) {
+  Bench bench;
+  bench.seeds = 3;
+  bench.knobs = {Knob::count};
+  const Sweep iso = sweeps(bench).front();
+  for (const Variant& variant : iso.variants) {
+    const double apart = &variant == &iso.variants.back() ? 0.05 : 0.1;
+    for (std::size_t k = 0; k < 3; ++k)
+      write(variant.records[0][k], 0.5 + apart * (static_cast<double>(k) - 1));
+  }
+  const auto errors = bench_errors(bench, folder);
+  EXPECT_NEAR(errors.at(0).comparison.band, std::sqrt((4 + 1) / 3.0) / 10, 1e-12);
+  EXPECT_NEAR(errors[0].packings, 0.2, 1e-12);  // its packings are what it compares
 }
 
 TEST_F(BenchFolder, SecondsAreTheMedianOfTheRunsThatSay) {

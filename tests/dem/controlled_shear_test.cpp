@@ -272,6 +272,15 @@ TEST_F(ControlledShearRun, SimpleShearAndBack) {
   expect_goes_on_from_checkpoints(segments, R"("rows": 4, "snapshots": [{"segment": 0, "eps_dev": 0.2}])");
 }
 
+TEST_F(ControlledShearRun, SimpleShearGoesOnAfterARestThatAServoCameBefore) {
+  const Record r = run(R"({"mode": "isotropic_stress", "P": 0.05, "rate": 1e-3},
+                          {"mode": "simple_shear", "amount": 0.3, "rate": 2e-3}, {"mode": "relax", "duration": 5},
+                          {"mode": "simple_shear", "amount": 0.3, "rate": 2e-3})",
+                       R"("rows": 1)");
+  ASSERT_EQ(r.rows(), 5u);
+  EXPECT_NEAR(r["eps_dev"][4] - r["eps_dev"][1], std::sqrt(3.0) * std::asinh(0.3), 1e-12);
+}
+
 TEST_F(ControlledShearRun, CanBeExplained) {
   const Scene scene =
       scene_of(control(rest, rest, rest, R"("xy": {"strain": 0.01}, "P": "start", "rate": 1e-3)") + "," +
