@@ -153,7 +153,7 @@ int run(const Arguments& arguments) {
     summary = dem::run_element_test(scene, part, hooks(terminal, interrupt, arguments));
   } catch (...) {
     std::error_code ignored;
-    if (!dem::has_checkpoint(part)) fs::remove_all(part, ignored);
+    if (!dem::has_checkpoint(part) && !fs::exists(part / "rows.csv", ignored)) fs::remove_all(part, ignored);
     throw;
   }
   if (summary.stopped) {

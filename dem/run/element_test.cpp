@@ -66,6 +66,7 @@ class ElementTest {
   void walk();
   void leave_leg();
   void cut_short(const std::string& why);
+  Error with_rows_kept(const Error& error) const;
   double wall_s() const { return place_.wall_s + seconds_since(begin_); }
   void write_checkpoint() const;
   void write_record(const RunSummary& summary) const;
@@ -170,7 +171,8 @@ void ElementTest::walk() {
     };
     drive(dynamics_, stage.leg, stage.stepping, place_.leg, after_step, watch_.stop());
   } catch (const Error& error) {
-    if (!stage.leg.minimises()) throw;
+    if (error.unwritable() || !stage.segment) throw;
+    if (!stage.leg.minimises()) throw with_rows_kept(error);
     return cut_short(error.what());
   }
   if (watch_.stopped()) return;
@@ -205,6 +207,15 @@ void ElementTest::cut_short(const std::string& why) {
   const Error error(scene_.file, scene_.path.segments.at(*stage.segment).key, why);
   cut_short_ = std::string(error.what()) + "; the test ends there";
   place_.stage = stages_.size();
+}
+
+/// Of a motion that cannot go on, whose last rows may be no result: it is said where that was, and where they
+/// are.
+Error ElementTest::with_rows_kept(const Error& error) const {
+  recorder_.flush();
+  return {
+      scene_.file, scene_.path.segments.at(*stages_[place_.stage].segment).key,
+      std::string(error.what()) + "; rows until then are in " + (out_dir_ / Recorder::rows_file).string()};
 }
 
 void ElementTest::write_checkpoint() const {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <thread>
@@ -41,6 +42,20 @@ TEST_F(Simulate, WritesARecord) {
   EXPECT_THAT(listing("out"), ElementsAre("x", "x/provenance.json", "x/record.csv", "x/scene.json"));
   EXPECT_TRUE(refuses(run({"simulate", "s.json", "-o", "out/x"}),
                       {"out/x: is not empty, and nothing in it is overwritten"}));
+}
+
+TEST_F(Simulate, KeepsTheRowsOfAMotionThatCannotGoOn) {
+  // Boxes that grains cross in every step: sooner or later two of them meet at one point.
+  write("s.json", R"({"preparation": {"count": 64, "nu": 0.7, "rate": 2e-3},
+    "path": {"segments": [{"mode": "d2", "amount": 0.02, "rate": 1e-3},
+                          {"repeat": 1000, "segments": [{"mode": "simple_shear", "amount": 100, "rate": 50}]}]},
+    "measure": {"rows": 5}})");
+  EXPECT_TRUE(
+      refuses(run({"simulate", "s.json", "-o", "x"}),
+              {"s.json: path.segments[1].segments[0]: ", "; rows until then are in ", "x.part/rows.csv"}));
+  const std::string rows = read("x.part/rows.csv");
+  EXPECT_GE(std::count(rows.begin(), rows.end(), '\n'), 6);  // those of the first segment at least
+  EXPECT_FALSE(fs::exists(folder / "x"));
 }
 
 TEST_F(Simulate, ExplainsAndMakesNothing) {
