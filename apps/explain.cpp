@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "grainlaw/apps/terminal.hpp"
@@ -67,27 +68,56 @@ std::string fields(const SceneCost& cost) {
                             size_text(sum * static_cast<double>(cost.grains)));
 }
 
-std::string nu_text(const dem::StageCost& cost) {
-  if (cost.stage.leg.control.by_stress()) return fmt::format("from {:.4g}", cost.nu[0]);
-  if (cost.nu[0] == cost.nu[1]) return fmt::format("{:.4g}", cost.nu[0]);
-  return fmt::format("{:.4g} to {:.4g}", cost.nu[0], cost.nu[1]);
+/// In brackets after a servo: as if it had strained nothing.
+std::string nu_text(const dem::StageCost& cost, bool known) {
+  const std::string nu = cost.stage.leg.control.by_stress() ? fmt::format("from {:.4g}", cost.nu[0])
+                         : cost.nu[0] == cost.nu[1]         ? fmt::format("{:.4g}", cost.nu[0])
+                                                    : fmt::format("{:.4g} to {:.4g}", cost.nu[0], cost.nu[1]);
+  return known ? nu : "(" + nu + ")";
 }
 
+/// Whether nothing but a guess is known of how long it takes.
+bool guessed(const dem::StageCost& cost) {
+  return !cost.tried && (cost.stage.leg.minimises() || cost.stage.leg.control.by_stress());
+}
+
+/// Whether only a part was tried of what may wait for a stress as long as it has to.
+bool may_wait(const dem::StageCost& cost) {
+  return cost.tried && cost.stage.leg.control.by_stress() && cost.most > cost.least;
+}
+
+/// Whether it may end before the time said.
+bool may_end_early(const dem::StageCost& cost) { return !cost.tried && !cost.stage.leg.drives(); }
+
 std::string stage_time(const dem::StageCost& cost) {
-  const Leg& leg = cost.stage.leg;
+  if (may_wait(cost))
+    return range_text(cost.seconds, cost.least, cost.most) + ", several times that if its servo has to wait";
   if (cost.tried) return range_text(cost.seconds, cost.least, cost.most);
-  return (leg.minimises() ? "not tried, perhaps "
-          : leg.drives()  ? ""
-                          : "at most ") +
+  return (guessed(cost)         ? "not tried, perhaps "
+          : may_end_early(cost) ? "at most "
+                                : "") +
          short_time(cost.seconds);
+}
+
+/// Of all stages, rows and files.
+std::string whole_time(const SceneCost& cost) {
+  const auto any = [&](bool (*is)(const dem::StageCost&)) {
+    return std::any_of(cost.stages.begin(), cost.stages.end(), is);
+  };
+  const std::string guess = any(guessed) ? "perhaps " : "", more = any(may_wait) ? " or more" : "";
+  if (any(may_end_early)) return guess + short_time(cost.least()) + " to " + short_time(cost.most()) + more;
+  if (!(cost.most() > cost.least())) return guess + short_time(cost.seconds());
+  return guess + range_text(cost.seconds(), cost.least(), cost.most()) + more;
 }
 
 std::string stages(const SceneCost& cost) {
   std::string text = "stage                      nu                steps       dt (us)   time\n";
+  bool known = true;
   for (const dem::StageCost& of : cost.stages) {
     const dem::Stage& stage = of.stage;
-    text += fmt::format("  {:<24} {:<16} {:>9} {:>12.4g}   {}\n", stage.name, nu_text(of),
+    text += fmt::format("  {:<24} {:<16} {:>9} {:>12.4g}   {}\n", stage.name, nu_text(of, known),
                         stage.stepping.steps, stage.leg.minimises() ? 0 : stage.stepping.dt, stage_time(of));
+    known = known && !stage.leg.control.by_stress();
     if (of.bytes != 0) text += fmt::format("  {:<24} and {} of memory meanwhile\n", "", size_text(of.bytes));
   }
   return text + fmt::format("  a step on the path: {}, of it contact forces {}, motion and lists {}\n\n",
@@ -126,12 +156,8 @@ std::string rows(const SceneCost& cost) {
 std::string explanation(const dem::Scene& scene, const dem::SceneCost& cost) {
   std::string text = fmt::format("{}: {} grains, w = {:.3g}\n\n", scene.file, cost.grains, scene.material.w);
   text += terms(scene.material, cost) + fields(cost) + stages(cost) + rows(cost);
-  const bool ranges = cost.most() > cost.least();
   return text + fmt::format("in all: {:.3g} particle-steps, {} of one core like this one now, {} of memory\n",
-                            cost.particle_steps(),
-                            ranges ? range_text(cost.seconds(), cost.least(), cost.most())
-                                   : short_time(cost.seconds()),
-                            size_text(cost.bytes()));
+                            cost.particle_steps(), whole_time(cost), size_text(cost.bytes()));
 }
 
 }  // namespace grainlaw::apps

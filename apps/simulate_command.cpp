@@ -178,12 +178,15 @@ Action add_simulate(CLI::App& program) {
       ->required();
   command->add_option("-o,--output", arguments->output, "directory to make; must not exist or be empty")
       ->type_name("DIR");
-  command->add_flag("--explain", arguments->explain,
-                    "only say what the scene turns on and what it will take, from a trial on this machine");
   command
-      ->add_option("--explain-seconds", arguments->explain_seconds,
-                   "processor seconds for which --explain tries each segment whose steps are not known in "
-                   "advance, the preparation included (default: 1.5 from a snapshot, else 0.5)")
+      ->add_flag("--explain", arguments->explain,
+                 "only say what the scene turns on and what it will take, from a trial on this machine")
+      ->disable_flag_override();
+  command
+      ->add_option(
+          "--explain-seconds", arguments->explain_seconds,
+          "processor seconds that --explain may run each stage (default: 3 where its steps are known in "
+          "advance; else 1.5 in the grains of the run, and 0.5 in others as dense)")
       ->type_name("SECONDS");
   command
       ->add_option("--threads", arguments->threads,

@@ -204,31 +204,50 @@ State first_grains(const Scene& scene, const State& start) {
 }
 
 /// Processor seconds that a stage may take in the grains that it begins with; 0 where it would take more, or
-/// where all stages so far have.
+/// where those before it have taken too long.
 double budget_of(const Stage& stage, std::size_t grains, double spent, const CostOptions& options) {
-  constexpr double whole_seconds = 3, all_seconds = 6;  // of a stage with planned steps; of all stages
-  constexpr double fastest = 2e-8;                      // s, of a step of a grain
+  constexpr double whole_seconds = 3, all_seconds = 6;  // of a stage with planned steps; of all before it
+  constexpr double fastest = 8e-9;                      // s, of a step of a grain, so far
   if (!options.trial_seconds && spent > all_seconds) return 0;
   if (needs_trial(stage)) return options.trial_seconds.value_or(usual_trial(Likeness::all));
   const double budget = options.trial_seconds.value_or(whole_seconds);
   return fastest * static_cast<double>(grains * stage.stepping.steps) < budget ? budget : 0;
 }
 
-/// Runs the stages from the first on, in the grains that they begin with, as long as each ends within its
-/// time; what is run is known. After a servo the stages are planned anew, which is not done here.
-void run_from_beginning(const Scene& scene, const State& start, const CostOptions& options,
-                        std::vector<StageCost>& stages) {
-  if (start.count() > largest_trial) return;
-  State grains = first_grains(scene, start);
+/// Runs the stages from the first on as a run does, in one and the same grains, as long as each ends within
+/// its time; what is run is known to the step. The grains at the end if that is all of them. After a servo
+/// the stages are planned anew, which is not done here.
+std::optional<State> run_from_beginning(const Scene& scene, const State& start, const CostOptions& options,
+                                        std::vector<StageCost>& stages) {
+  if (start.count() > largest_trial) return std::nullopt;
+  Dynamics grains(scene.material, first_grains(scene, start));
   const double begin = thread_seconds();
-  for (StageCost& cost : stages) {
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    StageCost& cost = stages[k];
     const double budget = budget_of(cost.stage, grains.count(), thread_seconds() - begin, options);
-    if (!(budget > 0)) return;
-    std::optional<LegCost> tried = try_leg(scene.material, grains, cost.stage, Likeness::all, budget);
-    if (needs_trial(cost.stage) || (tried && tried->end)) note(tried, 1, cost);
-    if (!tried || !tried->end || cost.stage.leg.control.by_stress()) return;
-    grains = std::move(*tried->end);
+    if (!(budget > 0)) return std::nullopt;
+    const bool begins_path = k > 0 && cost.stage.segment && !stages[k - 1].stage.segment;
+    if (begins_path) grains.begin_anew(grains.state());  // as a run does
+    const std::optional<LegCost> tried = try_leg(grains, cost.stage, budget);
+    if (needs_trial(cost.stage) || (tried && tried->ended)) note(tried, 1, cost);
+    if (!tried || !tried->ended) return std::nullopt;
+    if (cost.stage.leg.control.by_stress() && k + 1 < stages.size()) return std::nullopt;
   }
+  return grains.state();
+}
+
+/// What the path does all the time, and how often it looks, in grains that flow as it does.
+TrialCost try_flow(const Scene& scene, const State& flowing, const State& one_copy, const Stage& main,
+                   std::size_t grains, const CostOptions& options) {
+  Trial trial(scene.material, flowing, main);
+  trial.flow_in();
+  trial.steps();
+  trial.rows(scene.measure.observe);
+  if (!scene.measure.snapshots.empty()) trial.snapshot();
+  trial.checkpoint();
+  if (options.threads > 1) trial.threads(options.threads);
+  if (!scene.measure.moduli.empty()) trial.moduli(one_copy, main, grains);
+  return trial.cost();
 }
 
 std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::size_t grains,
@@ -241,17 +260,7 @@ std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::
     TrialPacking flowing = packing;
     flowing.shear();
     flowing.settle();
-    Trial trial(scene.material, flowing.state(), main);
-    trial.flow_in();
-    trial.steps();
-    trial.rows(scene.measure.observe);
-    if (!scene.measure.snapshots.empty()) trial.snapshot();
-    trial.checkpoint();
-    if (options.threads > 1) trial.threads(options.threads);
-    if (!scene.measure.moduli.empty()) {
-      trial.moduli(flowing.base(), main, grains);
-    }
-    trials.push_back(trial.cost());
+    trials.push_back(try_flow(scene, flowing.state(), flowing.base(), main, grains, options));
     try_stages(scene, grains, flowing.base(), place, places, options, stages);
   }
   return trials;
@@ -280,11 +289,12 @@ struct Trials {
 
 Trials try_all(const Scene& scene, const State& start, const CostOptions& options,
                std::vector<StageCost>& stages) {
+  if (const std::optional<State> end = run_from_beginning(scene, start, options, stages))
+    return {{}, {try_flow(scene, *end, *end, main_stage(stages, true).stage, start.count(), options)}};
   const auto* own = std::get_if<NewPacking>(&scene.preparation);
   TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
   Trials trials;
   if (own != nullptr) trials.prepared = try_preparation(packing, scene.material, stages);
-  run_from_beginning(scene, start, options, stages);
   trials.path = try_path(packing, scene, start.count(), options, stages);
   return trials;
 }

@@ -26,7 +26,7 @@ constexpr double plan_counts = 0.1;         // w: the share of a leg that its pl
 constexpr double spread_of_shares = 0.2;    // c: of passes per share, from one part of a leg to others
 constexpr double spread_of_packings = 0.6;  // of passes, between packings that are only as dense
 constexpr double before_end = 0.95;         // a leg whose stresses are not on target is not done
-constexpr std::size_t pieces = 8;
+constexpr std::size_t most_pieces = 8;
 constexpr std::chrono::milliseconds look_every{20};
 constexpr std::uint64_t fewest_looks = 20, steps_per_look = 10;
 
@@ -99,22 +99,26 @@ double passes_at(const std::vector<LegMark>& seen, double share) {
          (behind->passes - before.passes) * (share - before.share) / (behind->share - before.share);
 }
 
-/// Relative standard error of the mean of what equal pieces of the share took.
+/// Relative standard error of the mean of what equal pieces of the share took; of a single mark nothing is
+/// known, and pieces smaller than from one mark to the next would all be alike.
 double error_of_pieces(const std::vector<LegMark>& seen) {
-  const double piece = seen.back().share / pieces, mean = seen.back().passes / pieces;
+  const std::size_t pieces = std::min(most_pieces, seen.size());
+  if (pieces < 2) return 1;
+  const double count = static_cast<double>(pieces), piece = seen.back().share / count,
+               mean = seen.back().passes / count;
   double squares = 0;
   for (std::size_t k = 0; k < pieces; ++k) {
     const double from = static_cast<double>(k) * piece;
     squares += std::pow((passes_at(seen, from + piece) - passes_at(seen, from)) / mean - 1, 2);
   }
-  return std::sqrt(squares / ((pieces - 1) * pieces));
+  return std::sqrt(squares / ((count - 1) * count));
 }
 
 /// A stage that is run until it ends, or its time is over.
 class LegTrial {
  public:
-  LegTrial(const Material& material, const State& grains, Stage stage, double budget)
-      : stage_(std::move(stage)), budget_(budget), dynamics_(material, grains) {}
+  LegTrial(Dynamics& grains, const Stage& stage, double budget)
+      : stage_(stage), budget_(budget), dynamics_(grains) {}
 
   /// False where the grains cannot follow: an increment without balance, a motion that is unstable.
   bool run();
@@ -123,16 +127,15 @@ class LegTrial {
   double seconds() const { return seconds_; }
   double passes() const { return passes_; }
   const std::vector<LegMark>& seen() const { return seen_; }
-  State state() const { return dynamics_.state(); }
   /// The time since the last look, of an increment in its midst, at the pace until then.
   double passes_under_way() const { return at_look_ > 0 ? passes_ * (seconds_ - at_look_) / at_look_ : 0; }
 
  private:
   bool after(std::uint64_t step);
 
-  Stage stage_;
+  const Stage& stage_;
   double budget_;
-  Dynamics dynamics_;
+  Dynamics& dynamics_;
   LegState state_;
   double begin_ = 0, at_look_ = 0, seconds_ = 0, passes_ = 0;
   bool left_ = false;
@@ -208,21 +211,36 @@ LegPasses passes_of(const std::vector<LegMark>& seen, double planned, Likeness l
   return {all, all / of_all, all * of_all};
 }
 
-std::optional<LegCost> try_leg(const Material& material, const State& grains, const Stage& wanted,
-                               Likeness like, double budget) {
-  if (wanted.leg.controlled() && !wanted.leg.drives()) return std::nullopt;
-  Stage stage = wanted;
-  if (like == Likeness::density) stage.leg.control = kept_at_start(stage.leg.control);
-  LegTrial trial(material, grains, stage, budget);
+namespace {
+
+std::optional<LegCost> try_in(Dynamics& grains, const Stage& stage, Likeness like, double budget) {
+  const bool only_waits = stage.leg.controlled() && !stage.leg.drives();
+  if (only_waits && like == Likeness::density) return std::nullopt;
+  LegTrial trial(grains, stage, budget);
   if (!trial.run()) return std::nullopt;
   std::optional<LegCost> cost;
   if (trial.ended())
     cost = whole(trial, like);
   else if (like == Likeness::density || !trial.lost())
     cost = extrapolated(trial, static_cast<double>(stage.passes()), like);
-  if (cost && trial.ended() && like == Likeness::all) cost->end = trial.state();
-  if (cost && stage.leg.minimises()) cost->bytes = minimiser_bytes(material, grains);
+  if (!cost) return std::nullopt;
+  cost->ended = trial.ended();
+  if (stage.leg.minimises()) cost->bytes = minimiser_bytes(grains.material(), grains.state());
   return cost;
+}
+
+}  // namespace
+
+std::optional<LegCost> try_leg(const Material& material, const State& grains, const Stage& wanted,
+                               Likeness like, double budget) {
+  Stage stage = wanted;
+  if (like == Likeness::density) stage.leg.control = kept_at_start(stage.leg.control);
+  Dynamics own(material, grains);
+  return try_in(own, stage, like, budget);
+}
+
+std::optional<LegCost> try_leg(Dynamics& grains, const Stage& stage, double budget) {
+  return try_in(grains, stage, Likeness::all, budget);
 }
 
 }  // namespace grainlaw::dem

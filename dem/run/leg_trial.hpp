@@ -7,6 +7,7 @@
 
 #include "grainlaw/dem/drive/stage.hpp"
 #include "grainlaw/dem/packing/state.hpp"
+#include "grainlaw/dem/step/dynamics.hpp"
 #include "grainlaw/element/material.hpp"
 
 namespace grainlaw::dem {
@@ -15,11 +16,11 @@ namespace grainlaw::dem {
 inline bool needs_trial(const Stage& stage) { return stage.leg.controlled() || stage.leg.minimises(); }
 
 struct LegCost {
-  double seconds = 0;             ///< of the whole leg, by the part that was run
-  double least = 0, most = 0;     ///< s: between which it mostly lies; both `seconds` where all of it was run
-  double passes = 0;              ///< over the contacts, likewise
-  double bytes = 0;               ///< of a leg that minimises: held beside the grains while it does
-  std::optional<State> end = {};  ///< the grains where it came to its end, of Likeness::all
+  double seconds = 0;          ///< of the whole leg, by the part that was run
+  double least = 0, most = 0;  ///< s: between which it mostly lies; both `seconds` where all of it was run
+  double passes = 0;           ///< over the contacts, likewise
+  double bytes = 0;            ///< of a leg that minimises: held beside the grains while it does
+  bool ended = false;          ///< whether all of it was run
 };
 
 /// What trial grains have in common with those of the scene.
@@ -29,7 +30,7 @@ enum class Likeness {
   all       ///< they are those that the leg begins with
 };
 
-/// How long a leg is tried unless one asks for more, in processor seconds.
+/// How long a leg is tried, at most, unless one asks for more, in processor seconds.
 constexpr double usual_trial(Likeness like) { return like == Likeness::all ? 1.5 : 0.5; }
 
 /// Runs a stage for so many seconds, or as a whole if it takes no more. Of one that does not end, with p the
@@ -41,10 +42,12 @@ constexpr double usual_trial(Likeness like) { return like == Likeness::all ? 1.5
 /// mostly, with e^2 = (2 s)^2 + c^2/(p + w), s the standard error of the passes per share in eight equal
 /// pieces of what was seen, c = 0.2; of grains that are only as dense, all of it by another 0.6. How these
 /// numbers were found, and how often they held: docs/engine.md. None where a trial tells nothing: where the
-/// grains come no way along in that time (in no increment, too), where the leg only waits for stresses or
-/// loses one, and where the grains bear none.
+/// grains come no way along in that time (in no increment, too), where a leg that only waits for stresses has
+/// not ended, or one loses them, and where the grains bear none.
 std::optional<LegCost> try_leg(const Material& material, const State& grains, const Stage& stage,
                                Likeness like, double budget);
+/// Of the run's own grains, which it takes along.
+std::optional<LegCost> try_leg(Dynamics& grains, const Stage& stage, double budget);
 
 /// A trial of a leg after any look: the share that was done and the passes until then, both rising.
 struct LegMark {

@@ -82,12 +82,12 @@ TEST(LegTrial, NothingIsToldWhereALegWaitsOrGrainsBearNothing) {
 /// From the grains that it begins with, a leg is told by its part where it does not end within its time.
 TEST(LegTrial, AWholeLegOrByItsPart) {
   const auto whole = tried(R"({"mode": "d2", "amount": 1e-4, "profile": "steered"})", nu, Likeness::all);
-  ASSERT_TRUE(whole && whole->end);
+  ASSERT_TRUE(whole && whole->ended);
   EXPECT_EQ(whole->least, whole->seconds);
   EXPECT_EQ(whole->most, whole->seconds);
   const auto part = tried(R"({"mode": "biaxial", "amount": 0.5})", nu, Likeness::all, 0.1);
   ASSERT_TRUE(part);
-  EXPECT_FALSE(part->end);
+  EXPECT_FALSE(part->ended);
   EXPECT_GT(part->seconds, 0.1);
   EXPECT_LT(part->least, part->seconds);
   EXPECT_GT(part->most, part->seconds);
@@ -99,8 +99,8 @@ TEST(LegTrial, WithMoreTimeALegIsTriedAsAWhole) {
   const auto part = tried(segment, nu, Likeness::all, 0.02);
   const auto whole = tried(segment, nu, Likeness::all, 1000);
   ASSERT_TRUE(part && whole);
-  EXPECT_FALSE(part->end);
-  ASSERT_TRUE(whole->end);
+  EXPECT_FALSE(part->ended);
+  ASSERT_TRUE(whole->ended);
   EXPECT_GT(part->most, part->least);
   EXPECT_EQ(whole->most, whole->least);
 }
