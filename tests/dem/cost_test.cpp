@@ -151,9 +151,9 @@ TEST(Cost, StagesThatAreTriedAsAWholeTakeWhatTheirRunTakes) {
                    dir / "packing");
   const Scene scene =
       scene_of(R"({"preparation": {"snapshot": ")" + (dir / "packing/snapshots.h5").string() +
-               R"("}, "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.76}, "rate": 1e-4},
-      {"mode": "relax", "duration": 50}, {"mode": "relax", "residual": 1e-6}, {"mode": "relax", "duration": 50},
-      {"mode": "triaxial", "amount": 0.005, "rate": 1e-4}]}, "measure": {"rows": 2}})");
+               R"("}, "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.7}, "rate": 1e-4},
+      {"mode": "relax", "residual": 1e-6}, {"mode": "relax", "duration": 50},
+      {"mode": "triaxial", "amount": 0.05, "rate": 1e-4}]}, "measure": {"rows": 2}})");
   CostOptions options;
   options.trial_seconds = 1000;
   const SceneCost cost = cost_of(scene, options);
