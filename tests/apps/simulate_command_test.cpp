@@ -44,6 +44,19 @@ TEST_F(Simulate, WritesARecord) {
                       {"out/x: is not empty, and nothing in it is overwritten"}));
 }
 
+TEST_F(Simulate, ExplainSaysWhatIsAGuess) {
+  // Grains that bear no load have no stress to keep at its start, so nothing of the servo can be tried.
+  write("s.json", R"({"preparation": {"count": 64, "nu": 0.5, "rate": 2e-3, "relax": {"duration": 5}},
+    "path": {"segments": [{"mode": "triaxial", "stress": 0.01, "amount": 0.5}, {"mode": "d2", "amount": 0.01}]},
+    "measure": {"rows": 2}})");
+  const Outcome outcome = run({"simulate", "s.json", "--explain", "--explain-seconds", "0.01"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("triaxial \\(1 of 2\\) +from 0.5 .*not tried, perhaps "));
+  EXPECT_THAT(outcome.out,
+              testing::ContainsRegex("d2 \\(2 of 2\\) +\\(0\\.[0-9]+\\) "));  // a density in brackets
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("in all: .*, perhaps "));
+}
+
 TEST_F(Simulate, KeepsTheRowsOfAMotionThatCannotGoOn) {
   // Boxes that grains cross in every step: sooner or later two of them meet at one point.
   write("s.json", R"({"preparation": {"count": 64, "nu": 0.7, "rate": 2e-3},
@@ -91,6 +104,7 @@ TEST_F(Simulate, ExplainsForAsLongAsItIsTold) {
                       {"--explain-seconds: is for --explain alone"}));
   EXPECT_TRUE(refuses(run({"simulate", "s.json", "--explain", "--explain-seconds", "0"}),
                       {"--explain-seconds: must be a number"}));
+  EXPECT_TRUE(refuses(run({"simulate", "s.json", "--explain=5"}), {"explain"}));
 }
 
 TEST_F(Simulate, NeedsAFolder) {
