@@ -114,6 +114,7 @@ int run_command_line(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace grainlaw;
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // arrays of large packings go back to the system when they are freed
+  mallopt(M_TRIM_THRESHOLD, 8 << 20);  // those that a row of few grains needs do not, row by row
   std::signal(SIGXFSZ,
               SIG_IGN);  // a file that may not grow is an error like a full disk, not the end of the process
   try {

@@ -300,6 +300,7 @@ void print(const Times& spent, const Times& said, std::uint64_t steps, const fs:
 
 int main(int argc, char** argv) {
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);  // as grainlaw does
+  ::mallopt(M_TRIM_THRESHOLD, 8 << 20);
   if (argc == 5 && std::string(argv[1]) == "--memory")
     return answer_memory(std::atoll(argv[2]), static_cast<std::size_t>(std::atoll(argv[3])), argv[4]);
   if (argc == 5 && std::string(argv[1]) == "--apart") return answer(argv[2], argv[3], std::atof(argv[4]));
