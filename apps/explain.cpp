@@ -105,8 +105,9 @@ std::string whole_time(const SceneCost& cost) {
     return std::any_of(cost.stages.begin(), cost.stages.end(), is);
   };
   const std::string guess = any(guessed) ? "perhaps " : "", more = any(may_wait) ? " or more" : "";
-  if (any(may_end_early)) return guess + short_time(cost.least()) + " to " + short_time(cost.most()) + more;
-  if (!(cost.most() > cost.least())) return guess + short_time(cost.seconds());
+  const std::string least = short_time(cost.least()), most = short_time(cost.most());
+  if (least == most) return guess + most + more;
+  if (any(may_end_early)) return guess + least + " to " + most + more;
   return guess + range_text(cost.seconds(), cost.least(), cost.most()) + more;
 }
 

@@ -232,8 +232,7 @@ void check_width(const std::vector<Stage>& stages, const State& start, const Sce
     const int time = ++times[key];
     const std::optional<double> narrowest = box.narrowest_on_leg(least);
     const auto refuse = [&](const std::string& why) {
-      throw Error(scene.file, key,
-                  (time > 1 ? "repeated for the " + std::to_string(time) + ". time, " : "") + why);
+      throw Error(scene.file, key, (time > 1 ? "in its repetition " + std::to_string(time) + " " : "") + why);
     };
     if (!narrowest)
       refuse("tilts the box until its edges, which are never flipped, span more than " +

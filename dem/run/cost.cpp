@@ -149,6 +149,8 @@ std::vector<TrialCost> try_preparation(TrialPacking& packing, const Material& ma
   return trials;
 }
 
+constexpr double same_density = 0.01;  // of volume fractions for which one trial stands
+
 /// The densities between which the path goes.
 std::vector<double> densities(const std::vector<StageCost>& stages) {
   double low = 1, high = 0;
@@ -158,7 +160,7 @@ std::vector<double> densities(const std::vector<StageCost>& stages) {
         low = std::min(low, nu);
         high = std::max(high, nu);
       }
-  if (high - low > 0.01) return {low, high};
+  if (high - low > same_density) return {low, high};
   return {low};
 }
 
@@ -214,26 +216,51 @@ double budget_of(const Stage& stage, std::size_t grains, double spent, const Cos
   return fastest * static_cast<double>(grains * stage.stepping.steps) < budget ? budget : 0;
 }
 
+/// Of the places where a path comes by, the loosest and the densest.
+class Extremes {
+ public:
+  void see(const State& state) {
+    const double nu = state.volume_fraction();
+    if (states_.empty())
+      states_ = {state, state};
+    else if (nu < states_[0].volume_fraction())
+      states_[0] = state;
+    else if (nu > states_[1].volume_fraction())
+      states_[1] = state;
+  }
+  /// One where they are about as dense.
+  std::vector<State> take() {
+    if (states_[1].volume_fraction() - states_[0].volume_fraction() <= same_density) states_.resize(1);
+    return std::move(states_);
+  }
+
+ private:
+  std::vector<State> states_;
+};
+
 /// Runs the stages from the first on as a run does, in one and the same grains, as long as each ends within
-/// its time; what is run is known to the step. The grains at the end if that is all of them. After a servo
-/// the stages are planned anew, which is not done here.
-std::optional<State> run_from_beginning(const Scene& scene, const State& start, const CostOptions& options,
-                                        std::vector<StageCost>& stages) {
-  if (start.count() > largest_trial) return std::nullopt;
+/// its time; what is run is known to the step. If that is all of them, the loosest and the densest grains
+/// between which the path went. After a servo the stages are planned anew, which is not done here.
+std::vector<State> run_from_beginning(const Scene& scene, const State& start, const CostOptions& options,
+                                      std::vector<StageCost>& stages) {
+  if (start.count() > largest_trial) return {};
   Dynamics grains(scene.material, first_grains(scene, start));
+  Extremes seen;
   const double begin = thread_seconds();
   for (std::size_t k = 0; k < stages.size(); ++k) {
     StageCost& cost = stages[k];
     const double budget = budget_of(cost.stage, grains.count(), thread_seconds() - begin, options);
-    if (!(budget > 0)) return std::nullopt;
-    const bool begins_path = k > 0 && cost.stage.segment && !stages[k - 1].stage.segment;
-    if (begins_path) grains.begin_anew(grains.state());  // as a run does
+    if (!(budget > 0)) return {};
+    const bool begins_path = cost.stage.segment && (k == 0 || !stages[k - 1].stage.segment);
+    if (begins_path && k > 0) grains.begin_anew(grains.state());  // as a run does
+    if (begins_path) seen.see(grains.state());
     const std::optional<LegCost> tried = try_leg(grains, cost.stage, budget);
     if (needs_trial(cost.stage) || (tried && tried->ended)) note(tried, 1, cost);
-    if (!tried || !tried->ended) return std::nullopt;
-    if (cost.stage.leg.control.by_stress() && k + 1 < stages.size()) return std::nullopt;
+    if (!tried || !tried->ended) return {};
+    if (cost.stage.leg.control.by_stress() && k + 1 < stages.size()) return {};
+    if (cost.stage.segment) seen.see(grains.state());
   }
-  return grains.state();
+  return seen.take();
 }
 
 /// What the path does all the time, and how often it looks, in grains that flow as it does.
@@ -289,11 +316,13 @@ struct Trials {
 
 Trials try_all(const Scene& scene, const State& start, const CostOptions& options,
                std::vector<StageCost>& stages) {
-  if (const std::optional<State> end = run_from_beginning(scene, start, options, stages))
-    return {{}, {try_flow(scene, *end, *end, main_stage(stages, true).stage, start.count(), options)}};
+  Trials trials;
+  for (const State& seen : run_from_beginning(scene, start, options, stages))
+    trials.path.push_back(
+        try_flow(scene, seen, seen, main_stage(stages, true).stage, start.count(), options));
+  if (!trials.path.empty()) return trials;
   const auto* own = std::get_if<NewPacking>(&scene.preparation);
   TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
-  Trials trials;
   if (own != nullptr) trials.prepared = try_preparation(packing, scene.material, stages);
   trials.path = try_path(packing, scene, start.count(), options, stages);
   return trials;
