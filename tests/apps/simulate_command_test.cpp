@@ -94,8 +94,8 @@ TEST_F(Simulate, ExplainsAndMakesNothing) {
 
 TEST_F(Simulate, ExplainsForAsLongAsItIsTold) {
   write("s.json", R"({"preparation": {"count": 64, "nu": 0.7, "rate": 1e-2, "relax": {"duration": 50}},
-    "path": {"segments": [{"mode": "triaxial", "amount": 0.5}]}, "measure": {"rows": 2}})");
-  const Outcome brief = run({"simulate", "s.json", "--explain", "--explain-seconds", "0.05"});
+    "path": {"segments": [{"mode": "triaxial", "amount": 0.5, "rate": 1e-7}]}, "measure": {"rows": 2}})");
+  const Outcome brief = run({"simulate", "s.json", "--explain", "--explain-seconds", "0.5"});
   ASSERT_EQ(brief.status, 0) << brief.err;
   EXPECT_THAT(brief.out,
               testing::ContainsRegex("triaxial \\(1 of 1\\) +from 0.7 .* about .* \\(.* to .*\\), several"));
