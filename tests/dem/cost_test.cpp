@@ -170,7 +170,8 @@ TEST(Cost, RowsAndModuliAreNotThoseOfALooseEnd) {
     return cost_of(
         scene_of(std::string(R"({"preparation": {"count": 200, "rate": 2e-3, "relax": {"duration": 5}},
       "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.78}, "rate": 2e-3})") +
-                 then + R"(]}, "measure": {"rows": 2, "moduli": [{"segment": 0}]}})"));
+                 then + R"(]}, "measure": {"rows": 2, "moduli": [{"segment": 0}]}})"),
+        {1, 60, 1000});
   };
   const SceneCost up = up_and(""),
                   back = up_and(R"(, {"mode": "iso", "controls": {"nu": 0.6}, "rate": 2e-3})");
