@@ -23,6 +23,16 @@ std::string refusal(const std::string& text) {
   return "accepted";
 }
 
+/// What grains cannot follow in a segment after a rest, or "accepted".
+std::string refused_for_grains(const std::string& segment) {
+  try {
+    path_of(R"({"segments": [{"mode": "relax"}, )" + segment + "]}").need_grains_can_follow();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
 std::string refused_segment(const std::string& segment) {
   return refusal(R"({"start": {"nu": 0.7}, "segments": [)" + segment + "]}");
 }
@@ -154,14 +164,6 @@ TEST(Path, TwoTargetsAndStopsAreForTheLaw) {
   EXPECT_EQ(path.nominal_legs(0.7).size(), 3u);
   EXPECT_THROW(path.legs(0.7), Error);
   EXPECT_EQ(Path::read({path.to_json(), "p.json"}).to_json(), path.to_json());
-  const auto refused_for_grains = [](const std::string& segment) {
-    try {
-      path_of(R"({"segments": [{"mode": "relax"}, )" + segment + "]}").need_grains_can_follow();
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
-  };
   EXPECT_THAT(refused_for_grains(R"({"mode": "d2", "controls": {"P": "start", "eps_dev": 0.1}})"),
               testing::HasSubstr("p.json: segments[1].controls: has two targets"));
   EXPECT_THAT(refused_for_grains(R"({"mode": "d2", "amount": 0.1, "stop": {"column": "P", "above": 1}})"),
@@ -358,14 +360,6 @@ TEST(Path, SimpleShearGoesOnAcrossSegments) {
 }
 
 TEST(Path, GrainsNeedABoxWhoseNumbersHold) {
-  const auto refused_for_grains = [](const std::string& segment) {
-    try {
-      path_of(R"({"segments": [{"mode": "relax"}, )" + segment + "]}").need_grains_can_follow();
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
-  };
   const auto control = [](double x, double y, double xy, const std::string& more) {
     return R"({"mode": "control", "x": {"strain": )" + to_text(x) + R"(}, "y": {"strain": )" + to_text(y) +
            R"(}, "z": {"strain": 0}, "xy": {"strain": )" + to_text(xy) + "}" + more + "}";
