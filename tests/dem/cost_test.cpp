@@ -166,18 +166,20 @@ TEST(Cost, StagesThatAreTriedAsAWholeTakeWhatTheirRunTakes) {
 
 /// What is run as a whole is still looked at where it is densest: on the way back down there is no load.
 TEST(Cost, RowsAndModuliAreNotThoseOfALooseEnd) {
-  const auto up_and = [](const char* then) {
-    return cost_of(
-        scene_of(std::string(R"({"preparation": {"count": 200, "rate": 2e-3, "relax": {"duration": 5}},
-      "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.78}, "rate": 2e-3})") +
-                 then + R"(]}, "measure": {"rows": 2, "moduli": [{"segment": 0}]}})"),
-        {1, 60, 1000});
+  const auto along = [](const std::string& segments) {
+    return cost_of(scene_of(R"({"preparation": {"count": 200, "rate": 2e-3, "relax": {"duration": 5}},
+      "path": {"segments": [)" +
+                            segments + R"(]}, "measure": {"rows": 2, "moduli": [{"segment": 0}]}})"),
+                   {1, 60, 1000});
   };
-  const SceneCost up = up_and(""),
-                  back = up_and(R"(, {"mode": "iso", "controls": {"nu": 0.6}, "rate": 2e-3})");
+  const std::string compress = R"({"mode": "iso", "controls": {"nu": 0.78}, "rate": 2e-3})",
+                    loosen = R"({"mode": "iso", "controls": {"nu": 0.6}, "rate": 2e-3})";
+  const SceneCost up = along(compress), back = along(compress + ", " + loosen), loose = along(loosen);
   for (const StageCost& stage : back.stages) EXPECT_TRUE(stage.tried) << stage.stage.name;
   EXPECT_GT(back.contacts_per_grain, 0.4 * up.contacts_per_grain);  // the mean of both ends
-  EXPECT_GE(back.moduli_bytes, 0.8 * up.moduli_bytes);
+  // Measured 4.5 to 5.2 times, 3.2 to 3.6 under a sanitizer; 1 where only the end were looked at. Not against
+  // `up`: what a process measures first counts what the allocator takes for itself.
+  EXPECT_GT(back.moduli_bytes, 2 * loose.moduli_bytes);
 }
 
 /// Whatever the flow does to its lists, a short one is run: here one so fast that the grains fly.
