@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -142,36 +144,49 @@ calibrate::RunTest timed_test(const calibrate::Bench& bench) {
 std::string value_text(calibrate::Knob knob, double value) {
   switch (knob) {
     case calibrate::Knob::time_step:
-      return fmt::format("time step t_c/{}", value);
-    case calibrate::Knob::rate:
-      return fmt::format("rate x {}", value);
-    case calibrate::Knob::method:
-      return value > 0 ? fmt::format("quasistatic, increments of {}", value)
-                       : std::string("a tenth of the rate");
     case calibrate::Knob::gas_step:
-      return fmt::format("time step of the gas t_c/{}", value);
+      return fmt::format("t_c/{}", value);
+    case calibrate::Knob::rate:
+    case calibrate::Knob::method:
+      return fmt::format("x {}", value);
     case calibrate::Knob::count:
-      return fmt::format("{} grains", value);
+      return fmt::format("{}", value);
   }
   return "";
 }
 
-std::string lines_of(const std::vector<calibrate::Recommendation>& list, const char* measure) {
+/// Knobs by wanted errors: the cheapest value, and what it costs. Empty where none can be named.
+std::string cheapest(const std::vector<calibrate::BenchError>& errors, calibrate::Judge judge) {
+  const auto line = [](const std::string& name, const std::vector<std::string>& cells) {
+    std::string text = fmt::format("\n  {:12}", name);
+    for (const std::string& cell : cells) text += fmt::format("  {:>14}", cell);
+    return text;
+  };
+  std::vector<std::string> head;
+  std::map<calibrate::Knob, std::vector<std::string>> rows;
+  for (std::size_t k = 0; k < calibrate::wanted_errors.size(); ++k) {
+    head.push_back(fmt::format("{} %", 100 * calibrate::wanted_errors[k]));
+    for (const auto& best : recommend(errors, judge, calibrate::wanted_errors[k])) {
+      std::string cell = value_text(best.knob, best.value);
+      if (std::isfinite(best.core_s)) cell += fmt::format(", {:.2g} s", best.core_s);
+      rows[best.knob].resize(calibrate::wanted_errors.size(), "none");
+      rows[best.knob][k] = cell;
+    }
+  }
   std::string text;
-  for (const auto& best : list)
-    text += fmt::format("\n  {:28} largest error {:.2g} of {} ({} in {})", value_text(best.knob, best.value),
-                        best.worst, measure, best.quantity, name_of(best.test));
-  return text;
+  for (const auto& [knob, cells] : rows) text += line(name_of(knob), cells);
+  return text.empty() ? text : line("wanted error", head) + text;
 }
 
 /// What to take: for one test, and for means over many.
 std::string advice(const std::vector<calibrate::BenchError>& errors) {
   std::string text;
-  if (const auto list = recommend(errors, calibrate::Judge::one_packing); !list.empty())
-    text = "cheapest settings whose error is less than packings differ, so that one test does not show it:" +
-           lines_of(list, "that") + "\n";
-  return text + "cheapest settings whose error chance explains, for means over many tests:" +
-         lines_of(recommend(errors, calibrate::Judge::chance), "what chance makes");
+  if (const std::string one = cheapest(errors, calibrate::Judge::one_packing); !one.empty())
+    text = "cheapest settings for one test (errors count where they are larger than packings differ):" + one +
+           "\n";
+  return text +
+         "cheapest settings for means over many tests (errors count where chance does not explain them):" +
+         cheapest(errors, calibrate::Judge::chance);
 }
 
 /// The numbers and pictures of what is on disk.

@@ -15,8 +15,7 @@ namespace grainlaw::calibrate {
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-constexpr double most_bands = 2;           // an error beyond so many bands is not chance
-constexpr double negligible_error = 1e-3;  // nobody needs less, be there chaos or not
+constexpr double most_bands = 2;  // an error beyond so many bands is not chance
 
 Series mean_of(const std::vector<Series>& runs) {
   Series mean(runs.front().size(), 0);
@@ -149,9 +148,11 @@ bool judged(Knob knob, Judge judge) {
   return knob != Knob::method && (knob != Knob::count || judge == Judge::chance);
 }
 
-bool good_enough(const BenchError& line, Judge judge) {
-  const double granted = (judge == Judge::chance ? most_bands : 1) * measure_of(line, judge);
-  return line.finest || line.comparison.error <= negligible_error || line.comparison.error <= granted;
+bool good_enough(const BenchError& line, Judge judge, double wanted) {
+  const double measure = measure_of(line, judge);
+  if (std::isnan(measure)) return false;
+  const double granted = (judge == Judge::chance ? most_bands : 1) * measure;
+  return line.finest || line.comparison.error <= std::max(wanted, granted);
 }
 
 }  // namespace
@@ -213,30 +214,31 @@ std::vector<BenchError> bench_errors(const Bench& bench, const RunFolder& folder
   return errors;
 }
 
-std::vector<Recommendation> recommend(const std::vector<BenchError>& errors, Judge judge) {
+std::vector<Recommendation> recommend(const std::vector<BenchError>& errors, Judge judge, double wanted) {
   struct Candidate {
-    double cost = 0;
+    double particle_steps = 0;
+    std::map<BenchTest, double> core_s;
     bool good = true;
-    const BenchError* worst = nullptr;
-  };
-  const auto ratio = [judge](const BenchError& line) {
-    const bool matters = !line.finest && line.comparison.error > negligible_error;
-    return matters ? line.comparison.error / measure_of(line, judge) : 0;
   };
   std::map<Knob, std::map<double, Candidate>> knobs;
   for (const BenchError& line : errors) {
     Candidate& candidate = knobs[line.knob][line.value];
-    candidate.cost += line.particle_steps;
-    candidate.good = candidate.good && good_enough(line, judge) && !std::isnan(measure_of(line, judge));
-    if (candidate.worst == nullptr || ratio(line) > ratio(*candidate.worst)) candidate.worst = &line;
+    candidate.particle_steps += line.particle_steps;
+    candidate.core_s[line.test] = line.core_s;
+    candidate.good = candidate.good && good_enough(line, judge, wanted);
   }
   std::vector<Recommendation> list;
   for (const auto& [knob, candidates] : knobs) {
-    const Candidate* best = nullptr;
-    for (const auto& [value, candidate] : candidates)
-      if (candidate.good && (best == nullptr || candidate.cost < best->cost)) best = &candidate;
-    if (best == nullptr || !judged(knob, judge)) continue;
-    list.push_back({knob, best->worst->value, ratio(*best->worst), best->worst->test, best->worst->quantity});
+    if (!judged(knob, judge)) continue;
+    auto best = candidates.end();
+    for (auto one = candidates.begin(); one != candidates.end(); ++one)
+      if (one->second.good &&
+          (best == candidates.end() || one->second.particle_steps < best->second.particle_steps))
+        best = one;
+    if (best == candidates.end()) continue;
+    double core_s = 0;
+    for (const auto& [test, seconds] : best->second.core_s) core_s += seconds;
+    list.push_back({knob, best->first, core_s});
   }
   return list;
 }

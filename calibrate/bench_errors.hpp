@@ -1,6 +1,7 @@
 // What a bench's runs say: the error of every setting against the finest, beside what chance alone makes.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -54,17 +55,21 @@ std::vector<BenchError> bench_errors(const Bench& bench, const RunFolder& folder
 /// nothing is known of the latter.
 enum class Judge { chance, one_packing };
 
-/// The cheapest value of a knob whose errors are all within what the judge grants, or below a thousandth.
-/// `worst` is the largest error over that measure (band or scatter of packings) at that value, of errors
-/// above a thousandth; else 0; and `quantity` says of what.
+/// A value of a knob, and what one run of each test takes with it.
 struct Recommendation {
   Knob knob;
   double value;
-  double worst;
-  BenchTest test;
-  std::string quantity;
+  double core_s;  ///< NaN where a run did not say
 };
-std::vector<Recommendation> recommend(const std::vector<BenchError>& errors, Judge judge);
+/// Of each knob the cheapest value whose errors are all below `wanted` (a share: 0.0025), or within what the
+/// judge grants. Of the method there is none; of the number of grains only by chance, as fewer scatter more.
+std::vector<Recommendation> recommend(const std::vector<BenchError>& errors, Judge judge, double wanted);
+
+/// Errors that somebody may want.
+inline constexpr std::array<double, 4> wanted_errors{0.001, 0.0025, 0.005, 0.01};
+/// The one that a scene's defaults are chosen for: by so much of C* the fits of one packing of 1000 grains
+/// miss its rows (0.013 to 0.020 of 8).
+inline constexpr double default_error = wanted_errors[1];
 
 /// The file in a record's directory that says what the run cost.
 inline constexpr const char* core_time_file = "core_time.json";

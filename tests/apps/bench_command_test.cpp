@@ -20,7 +20,7 @@ class BenchCommand : public Program {
 TEST_F(BenchCommand, WritesTablePictureAndPageAndGoesOn) {
   const Outcome first = run(tiny);
   ASSERT_EQ(first.status, 0) << first.err;
-  EXPECT_THAT(first.out, HasSubstr("cheapest settings whose error chance explains"));
+  EXPECT_THAT(first.out, HasSubstr("cheapest settings for means over many tests"));
   EXPECT_THAT(first.out, Not(HasSubstr("packings differ")));  // there is one
   const Json result = load_json(folder / "b/speed-against-error.json");
   EXPECT_EQ(result.at("errors").size(), 5u * (2 + 4));  // values times quantities of ISO and of D2
@@ -56,8 +56,8 @@ TEST_F(BenchCommand, SeveralPackingsTellWhatOneTestIsWorth) {
   two[7] = "2";
   const Outcome outcome = run(two);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("less than packings differ"));
-  EXPECT_THAT(outcome.out, HasSubstr("chance explains, for means over many tests"));
+  EXPECT_THAT(outcome.out, HasSubstr("larger than packings differ"));
+  EXPECT_THAT(outcome.out, HasSubstr("where chance does not explain them"));
   const Json result = load_json(folder / "b/speed-against-error.json");
   for (const Json& entry : result.at("errors"))
     EXPECT_GT(entry.at("packings").get<double>(), entry.at("scatter").get<double>());
