@@ -19,6 +19,7 @@
 #include "grainlaw/apps/summary.hpp"
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/calibrate/campaign.hpp"
+#include "grainlaw/calibrate/campaign_boxes.hpp"
 #include "grainlaw/calibrate/campaign_folder.hpp"
 #include "grainlaw/calibrate/fit_records.hpp"
 #include "grainlaw/calibrate/predict_records.hpp"
@@ -143,6 +144,7 @@ int run(const Arguments& arguments) {
   arguments.run.checkpoint_every();
   worker_count(arguments);  // what would end the run is said before it begins, not after the simulation
   const auto campaign = calibrate::Campaign::load(campaign_file(arguments));
+  check_boxes(campaign);
   find_thesis(campaign.material.w);
   report::run_gnuplot("");
   const fs::path dir =

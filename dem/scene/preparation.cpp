@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "grainlaw/dem/numbers/random.hpp"
 #include "grainlaw/dem/packing/cell.hpp"
@@ -78,14 +79,21 @@ void push_apart(State& state) {
   }
 }
 
-State random_gas(const Material& material, const NewPacking& packing) {
-  Random random(packing.seed);
+State without_places(std::vector<double> radii, double nu) {
   State state;
-  state.radius = draw_radii(material, static_cast<std::size_t>(packing.count), random);
+  state.radius = std::move(radii);
   double solid = 0;
   for (const double r : state.radius) solid += sphere_volume(r);
-  const double edge = std::cbrt(solid / packing.nu_gas);
+  const double edge = std::cbrt(solid / nu);
   state.box = Mat3::diagonal({edge, edge, edge});
+  return state;
+}
+
+State random_gas(const Material& material, const NewPacking& packing) {
+  Random random(packing.seed);
+  State state =
+      without_places(draw_radii(material, static_cast<std::size_t>(packing.count), random), packing.nu_gas);
+  const double edge = state.box(0, 0);
   state.position.resize(state.count());
   state.velocity.resize(state.count());
   for (auto& x : state.position)

@@ -1,12 +1,17 @@
 // Preparation of a packing as in the thesis (section 2.2.2): a random gas, compressed and relaxed.
 #pragma once
 
+#include <vector>
+
 #include "grainlaw/dem/packing/state.hpp"
 #include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/material.hpp"
 #include "grainlaw/element/path.hpp"
 
 namespace grainlaw::dem {
+
+/// Grains of these radii, which have no places yet, and a cube in which their volume fraction is `nu`.
+State without_places(std::vector<double> radii, double nu);
 
 /// The gas: grains at random places in a cube at packing.nu_gas, pushed apart until none overlap, with random
 /// velocities of root mean square packing.speed and no total momentum. The same seed gives the same gas to

@@ -214,9 +214,12 @@ TEST_F(Calibrate, AnotherCampaignIsRefusedAndLeftAsItIs) {
 }
 
 TEST_F(Calibrate, AFailedTestSkipsItsDependentsAndTheRestGoesOn) {
-  // A uniaxial test to a box too narrow for its largest grain cannot run; one that starts from it neither.
+  // A test to a box too narrow for its largest grain cannot run; one that starts from it neither. What the
+  // box is where it starts, only the grains know.
   std::string text = one_seed();
-  const std::string impossible = R"({"name": "flat", "role": "fit", "path": {"segments": [
+  const std::string impossible = R"({"name": "squeezed", "role": "predict", "path": {"segments": [
+      {"mode": "components", "strain": [0.01, 0, 0]}]}},
+      {"name": "flat", "role": "fit", "from": {"test": "squeezed"}, "path": {"segments": [
       {"mode": "components", "strain": [1.4, -1.4, 0]}, {"mode": "relax"}]}},
       {"name": "after", "role": "fit", "from": {"test": "flat"}, "path": {"segments": [{"mode": "d2", "amount": 0.1}]}},)";
   text.insert(text.find('[', text.find("\"tests\"")) + 1, impossible);
@@ -225,7 +228,7 @@ TEST_F(Calibrate, AFailedTestSkipsItsDependentsAndTheRestGoesOn) {
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("failed: flat-s1: "));
   EXPECT_THAT(outcome.err, HasSubstr("skipped, because they start from flat-s1: after-s1"));
-  EXPECT_EQ(records("out/a").size(), 5u);
+  EXPECT_EQ(records("out/a").size(), 6u);
   EXPECT_TRUE(has("out/a/report.html"));
   const Json failure = json("out/a/failures.json").at("failures").at(0);
   EXPECT_EQ(failure.at("record"), "flat-s1");
@@ -233,13 +236,26 @@ TEST_F(Calibrate, AFailedTestSkipsItsDependentsAndTheRestGoesOn) {
 }
 
 TEST_F(Calibrate, WhereEveryTestFailsThereIsNothingToFit) {
-  write("c.json",
-        R"({"name": "c", "preparation": {"count": 8}, "seeds": [1], "tests": [{"name": "flat", "role": "fit",
-      "path": {"segments": [{"mode": "components", "strain": [3, -3, 0]}]}}]})");
+  write(
+      "c.json",
+      R"({"name": "c", "preparation": {"count": 64, "nu": 0.7, "rate": 2e-3}, "measure": {"rows": 1}, "seeds": [1], "tests": [{"name": "torn", "role": "predict",
+      "path": {"segments": [{"repeat": 1000, "segments": [{"mode": "simple_shear", "amount": 100, "rate": 50}]}]}}]})");
   const Outcome outcome = run({"calibrate", "c.json", "-o", "out/a"});
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("1 of the tests failed, see out/a/failures.json"));
   EXPECT_FALSE(has("out/a/parameters.json"));
+}
+
+TEST_F(Calibrate, ABoxTooNarrowIsRefusedBeforeAnyWork) {
+  std::string text = one_seed();
+  text.insert(text.find('[', text.find("\"tests\"")) + 1,
+              R"({"name": "flat", "role": "fit", "path": {"segments": [
+      {"mode": "components", "strain": [1.4, -1.4, 0]}]}},)");
+  write("c.json", text);
+  EXPECT_TRUE(
+      refuses(run({"calibrate", "c.json", "-o", "out/a"}),
+              {"c.json: tests[0].path.segments[0]: makes the box", "take more grains or less strain"}));
+  EXPECT_FALSE(has("out/a"));
 }
 
 TEST_F(Calibrate, AFullDiskEndsItAndResumeGoesOn) {
