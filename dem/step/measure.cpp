@@ -1,6 +1,8 @@
 #include "grainlaw/dem/step/measure.hpp"
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "grainlaw/dem/numbers/dyad.hpp"
@@ -8,6 +10,8 @@
 namespace grainlaw::dem {
 
 namespace {
+
+using Contacts = std::span<const Contact>;
 
 double solid_volume(const Grains& grains) {
   double sum = 0;
@@ -38,30 +42,57 @@ void count_contacts(const std::vector<std::uint32_t>& contacts_of, Measurement& 
   m.f_NR = static_cast<double>(bearing) / grains;
 }
 
+/// Calls f for all contacts, some hundred at a time and in their order: a loop over one quantity keeps its
+/// sum in registers, and what is not wanted is asked once a block.
+template <class F>
+void for_blocks_of_contacts(const Pairs& pairs, const Grains& grains, const Cell& cell, F&& f) {
+  std::array<Contact, 256> block;
+  std::size_t filled = 0;
+  for_each_contact(pairs, grains, cell, [&](const Contact& c) {
+    block[filled++] = c;
+    if (filled < block.size()) return;
+    f(Contacts(block));
+    filled = 0;
+  });
+  f(Contacts(block.data(), filled));
+}
+
+void add_stress(const ContactLaw& law, const Quads& velocity, const Cell& cell, Contacts contacts,
+                Sym6& stress) {
+  Sym6 sum = stress;
+  for (const Contact& c : contacts)
+    add_dyad(sum, law.force(c.overlap, closing_speed(c, velocity, cell)) / c.distance, c.branch);
+  stress = sum;
+}
+
+void add_fabric(const Grains& grains, Contacts contacts, Sym6& fabric) {
+  Sym6 sum = fabric;
+  for (const Contact& c : contacts) {
+    const double volumes = sphere_volume(grains.place[c.i].w) + sphere_volume(grains.place[c.j].w);
+    add_dyad(sum, volumes / (c.distance * c.distance), c.branch);
+  }
+  fabric = sum;
+}
+
 /// What is wanted of the contacts, in one walk through them.
 void measure_contacts(const ContactLaw& law, const Grains& grains, const Quads& velocity, const Cell& cell,
                       const Pairs& pairs, const Wanted& wanted, Measurement& m) {
   std::vector<std::uint32_t> contacts_of(wanted.coordination ? grains.count() : 0, 0);
   Sym6 stress{}, fabric{};
   double elastic = 0;
-  for_each_contact(pairs, grains, cell, [&](const Contact& c) {
-    if (wanted.coordination) {
-      ++contacts_of[c.i];
-      ++contacts_of[c.j];
-    }
-    if (wanted.stress)
-      add_dyad(stress, law.force(c.overlap, closing_speed(c, velocity, cell)) / c.distance, c.branch);
-    if (wanted.fabric) {
-      const double volumes = sphere_volume(grains.place[c.i].w) + sphere_volume(grains.place[c.j].w);
-      add_dyad(fabric, volumes / (c.distance * c.distance), c.branch);
-    }
-    if (wanted.energies) elastic += law.energy(c.overlap);
+  for_blocks_of_contacts(pairs, grains, cell, [&](Contacts contacts) {
+    if (wanted.stress) add_stress(law, velocity, cell, contacts, stress);
+    if (wanted.fabric) add_fabric(grains, contacts, fabric);
+    if (wanted.coordination)
+      for (const Contact& c : contacts) ++contacts_of[c.i], ++contacts_of[c.j];
+    if (wanted.energies)
+      for (const Contact& c : contacts) elastic += law.energy(c.overlap);
   });
   const double per_volume = 1 / cell.volume();
   if (wanted.stress) m.stress = times(per_volume, stress);
   if (wanted.fabric) m.fabric = times(per_volume, fabric);
-  if (wanted.energies) m.elastic = elastic;
   if (wanted.coordination) count_contacts(contacts_of, m);
+  if (wanted.energies) m.elastic = elastic;
 }
 
 }  // namespace
