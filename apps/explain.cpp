@@ -1,11 +1,13 @@
 #include "grainlaw/apps/explain.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "grainlaw/apps/terminal.hpp"
+#include "grainlaw/element/column_groups.hpp"
 
 namespace grainlaw::apps {
 
@@ -126,7 +128,18 @@ std::string stages(const SceneCost& cost) {
                             short_time(cost.force_seconds), short_time(cost.motion_seconds));
 }
 
-std::string rows(const SceneCost& cost) {
+/// Which groups of standard columns a scene turns on, and which it leaves out.
+std::string groups_text(const std::vector<std::string>& asked) {
+  std::vector<std::string> left_out;
+  for (const std::string& group : column_groups())
+    if (std::find(asked.begin(), asked.end(), group) == asked.end()) left_out.push_back(group);
+  const std::string on =
+      asked.empty() ? "none but segment, strains, nu and t" : fmt::format("{}", fmt::join(asked, ", "));
+  if (left_out.empty()) return fmt::format("    {}\n", on);
+  return fmt::format("    {}; measure.standard leaves out {}\n", on, fmt::join(left_out, ", "));
+}
+
+std::string rows(const dem::Measure& measure, const SceneCost& cost) {
   double steps = 0;
   for (const auto& stage : cost.stages)
     if (stage.stage.segment) steps += static_cast<double>(stage.stage.stepping.steps);
@@ -136,7 +149,7 @@ std::string rows(const SceneCost& cost) {
                        bytes > 0 ? size_text(bytes) : std::string("-"));
   };
   std::string text = fmt::format("measured in {} rows         per row     per step   memory\n", cost.rows);
-  text += line("standard columns", cost.row_seconds, 0);
+  text += line("standard columns", cost.row_seconds, 0) + groups_text(measure.standard);
   for (const auto& observer : cost.observers)
     text += line(observer.name, observer.seconds_per_row, observer.bytes);
   if (cost.observers.empty()) text += "  nothing else: measure.observe is empty\n";
@@ -156,7 +169,7 @@ std::string rows(const SceneCost& cost) {
 
 std::string explanation(const dem::Scene& scene, const dem::SceneCost& cost) {
   std::string text = fmt::format("{}: {} grains, w = {:.3g}\n\n", scene.file, cost.grains, scene.material.w);
-  text += terms(scene.material, cost) + fields(cost) + stages(cost) + rows(cost);
+  text += terms(scene.material, cost) + fields(cost) + stages(cost) + rows(scene.measure, cost);
   return text + fmt::format("in all: {:.3g} particle-steps, {} of one core like this one now, {} of memory\n",
                             cost.particle_steps(), whole_time(cost), size_text(cost.bytes()));
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "grainlaw/calibrate/campaign_origins.hpp"
+#include "grainlaw/element/column_groups.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/json_difference.hpp"
 
@@ -69,6 +70,17 @@ Path read_path(Reader reader) {
   return path;
 }
 
+/// With all columns of its records, which fits, comparisons and reports read.
+dem::Measure read_measure(const Reader& reader, const dem::Measure& fallback) {
+  const dem::Measure measure = dem::Measure::read(reader, fallback);
+  for (const std::string& group : column_groups())
+    if (std::find(measure.standard.begin(), measure.standard.end(), group) == measure.standard.end())
+      throw Error(
+          reader.file(), reader.path_of("standard"),
+          "must have \"" + group + "\" in a campaign, whose fits, comparisons and report read its columns");
+  return measure;
+}
+
 Role role_from(const std::string& word) {
   if (word == "memory") return Role::memory;
   return word == "fit" ? Role::fit : Role::predict;
@@ -93,7 +105,7 @@ std::vector<WrittenTest> read_test(Reader& reader, const Campaign& campaign) {
   if (test.role != Role::predict && test.path.spins())
     reader.fail("role", "must be predict where the path has simple_shear, got " + name_of(test.role) +
                             ": the laws have one direction of shear");
-  test.measure = dem::Measure::read(reader.object_or_empty("measure"), campaign.measure);
+  test.measure = read_measure(reader.object_or_empty("measure"), campaign.measure);
   reader.finish();
   if (!from || !from->list) return {{test, from}};
   std::vector<WrittenTest> tests;
@@ -143,7 +155,7 @@ Campaign Campaign::read(Reader reader) {
   campaign.preparation =
       dem::NewPacking::read(reader.object_or_empty("preparation"), dem::NewPacking::SeedKey::refused);
   campaign.seeds = read_seeds(reader);
-  campaign.measure = dem::Measure::read(reader.object_or_empty("measure"));
+  campaign.measure = read_measure(reader.object_or_empty("measure"), {});
   std::vector<WrittenTest> written;
   std::size_t jobs = 0;
   for (Reader& test : reader.objects("tests"))

@@ -22,6 +22,13 @@ constexpr std::size_t fewest_rows_cut_short = 10;
 const std::vector<std::string> needed_columns{"segment", "eps_vol", "eps_dev", "nu",     "P",
                                               "s_dev",   "F_dev",   "C",       "C_star", "f_NR"};
 
+/// Where a scene says which columns are written, also the one by which rows at rest are told.
+std::vector<std::string> columns_needed(const Json& scene) {
+  std::vector<std::string> columns = needed_columns;
+  if (scene.value("measure", Json::object()).contains("standard")) columns.emplace_back("Ek_over_Ep");
+  return columns;
+}
+
 std::string mode_of(const Path& path) {
   std::set<Mode> modes;
   for (const Segment& segment : path.segments) {
@@ -129,7 +136,7 @@ TestRecord read_record(const fs::path& dir, Role role) {
   test.path = Path::read(reader.object("path"));
   test.mode = mode_of(test.path);
   test.sheared_along = shear_axis_before(json, dir);
-  test.rows = Record::read_csv(table, needed_columns);
+  test.rows = Record::read_csv(table, columns_needed(json));
   test.cut_short = cut_short(dir);
   check_rows(json, test.path, test.rows, dir);
   test.moduli = kept_moduli(json, dir / "moduli.csv", !test.cut_short.empty());

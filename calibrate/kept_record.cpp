@@ -5,6 +5,7 @@
 #include "grainlaw/dem/observe/names.hpp"
 #include "grainlaw/dem/record/moduli_writer.hpp"
 #include "grainlaw/dem/scene/scene.hpp"
+#include "grainlaw/element/column_groups.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/record.hpp"
@@ -55,7 +56,7 @@ void check_kept_record(const fs::path& dir, const Json& planned) {
       throw Error(scene, "", "is another scene than is wanted (" + differs + ")");
     const bool ends_early = !cut_short(dir).empty();
     const std::string table = (dir / "record.csv").string();
-    std::vector<std::string> columns = record_columns();
+    std::vector<std::string> columns = record_columns_with(wanted.measure.standard);
     for (const auto& column : dem::observe::columns(wanted.measure.observe)) columns.push_back(column);
     const Record record = Record::read_csv(table, columns);
     for (const auto& file : dem::observe::tables(wanted.measure.observe))

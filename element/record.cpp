@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "grainlaw/element/column_groups.hpp"
 #include "grainlaw/element/components.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
@@ -85,6 +86,15 @@ void check_separator(std::string_view header, const std::string& file) {
               name);
 }
 
+Error missing(const std::string& file, const std::string& column) {
+  const std::string group = group_of_column(column);
+  return {
+      file, column,
+      "column is missing" +
+          (group.empty() ? ""
+                         : "; a test writes it where measure.standard of its scene has \"" + group + "\"")};
+}
+
 void check_header(const Record& record, const std::string& file, const std::vector<std::string>& required) {
   const auto& names = record.columns();
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -94,7 +104,7 @@ void check_header(const Record& record, const std::string& file, const std::vect
       throw Error(file, names[i], "line 1: column is given twice");
   }
   for (const auto& column : required)
-    if (!record.has(column)) throw Error(file, column, "column is missing");
+    if (!record.has(column)) throw missing(file, column);
 }
 
 }  // namespace
@@ -121,7 +131,7 @@ Record::Record(std::vector<std::string> columns) : names_(std::move(columns)), d
 
 std::size_t Record::index(std::string_view column) const {
   const auto found = std::find(names_.begin(), names_.end(), column);
-  if (found == names_.end()) throw Error("", std::string(column), "column is missing");
+  if (found == names_.end()) throw missing("", std::string(column));
   return static_cast<std::size_t>(found - names_.begin());
 }
 

@@ -65,9 +65,8 @@ void relax(Dynamics& dynamics, const Leg& leg, const StepPlan& plan, LegState& s
     if (state.step == 0 || state.step % relax_check_interval != 0) return false;
     const Energies e = dynamics.energies();
     if (e.kinetic > leg.tolerance * std::max(e.elastic, state.kinetic_at_start)) return false;
-    const Measurement m = dynamics.measure();
-    return m.f_NR > 0 ? m.kinetic <= leg.tolerance * m.elastic
-                      : m.kinetic <= leg.tolerance * state.kinetic_at_start;
+    const bool bears = dynamics.measure(Wanted{.coordination = true}).f_NR > 0;
+    return e.kinetic <= leg.tolerance * (bears ? e.elastic : state.kinetic_at_start);
   };
   while (state.step < plan.steps && !at_rest()) {
     dynamics.step();

@@ -14,6 +14,7 @@ struct ContactFabric {
                                                            "F0yz",   "F0xz", "F0xy"};
   static constexpr std::size_t grain_bytes = 0;
   static constexpr bool walks_contacts = true;
+  static constexpr Wanted reads{};
   std::array<double, 7> values(const View& view) const;
 };
 

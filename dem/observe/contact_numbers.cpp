@@ -11,8 +11,9 @@ std::array<double, 3> ContactNumbers::values(const View& view) const {
       of_rattlers += c;
   const double all = 2 * static_cast<double>(view.network.contacts.size());
   const double held = all - 2 * static_cast<double>(of_rattlers);
-  return {view.measured.C_r, bearing > 0 ? held / static_cast<double>(bearing) : undefined,
-          1 - view.measured.f_NR};
+  const double grains = static_cast<double>(view.network.contacts_of.size());
+  return {all / grains, bearing > 0 ? held / static_cast<double>(bearing) : undefined,
+          1 - static_cast<double>(bearing) / grains};
 }
 
 }  // namespace grainlaw::dem::observe

@@ -14,6 +14,7 @@ struct ContactNumbers {
   static constexpr std::array<std::string_view, 3> columns{"C_r", "C_star_p", "phi_r"};
   static constexpr std::size_t grain_bytes = 0;
   static constexpr bool walks_contacts = true;
+  static constexpr Wanted reads{};
   std::array<double, 3> values(const View& view) const;
 };
 

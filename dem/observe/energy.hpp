@@ -13,6 +13,7 @@ struct Energy {
   static constexpr std::array<std::string_view, 2> columns{"E_k", "E_p"};
   static constexpr std::size_t grain_bytes = 0;
   static constexpr bool walks_contacts = false;
+  static constexpr Wanted reads{.energies = true};
   std::array<double, 2> values(const View& view) const {
     const double per_unit = 1 / (static_cast<double>(view.grains().count()) * view.material.k *
                                  view.material.r_mean * view.material.r_mean);

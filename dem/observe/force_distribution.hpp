@@ -14,6 +14,7 @@ struct ForceDistribution {
   static constexpr std::array<std::string_view, 0> columns{};
   static constexpr std::size_t grain_bytes = 0;
   static constexpr bool walks_contacts = true;
+  static constexpr Wanted reads{};
   static constexpr std::string_view file = "force_distribution.csv";
   static constexpr auto table_columns = Histogram::columns;
   static constexpr std::size_t table_rows = Histogram::bins;

@@ -13,6 +13,7 @@ struct KineticStress {
   static constexpr std::array<std::string_view, 6> columns{"kxx", "kyy", "kzz", "kyz", "kxz", "kxy"};
   static constexpr std::size_t grain_bytes = 0;
   static constexpr bool walks_contacts = false;
+  static constexpr Wanted reads{.kinetic_stress = true};
   std::array<double, 6> values(const View& view) const {
     return times(1 / view.material.stress_unit(), view.measured.kinetic_stress);
   }

@@ -19,6 +19,7 @@ class Nonaffine {
   static constexpr std::size_t grain_bytes = 320;
   static constexpr std::size_t kept_bytes = sizeof(Quad);  ///< of these, from row to row
   static constexpr bool walks_contacts = false;
+  static constexpr Wanted reads{};
   static constexpr double gap = 0.5;  ///< of neighbours, in <r>
 
   /// Compares with the row before, and keeps this one for the next.

@@ -57,6 +57,7 @@ Observers::Observers(const std::vector<std::string>& asked) : columns_(observe::
   for_each_asked(asked, [&]<class O>(std::type_identity<O>) {
     list_.emplace_back(O{});
     walks_contacts_ = walks_contacts_ || O::walks_contacts;
+    reads_ = reads_ | O::reads;
     if constexpr (Tabulates<O>)
       tables_.push_back({std::string(O::file), Record(table_columns(O::table_columns))});
   });

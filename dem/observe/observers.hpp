@@ -22,9 +22,10 @@
 
 namespace grainlaw::dem::observe {
 
-/// An observer has a name, the bytes per grain that it needs (kept and while it looks), the columns it adds
-/// to record.csv and their values for a View; one that fills a table has its file, the columns of it, the
-/// rows it adds each time, and a function that appends rows. Its place here is that of its columns. A new one
+/// An observer has a name, the bytes per grain that it needs (kept and while it looks), whether it walks the
+/// contacts of the View, what it reads of the Measurement there beside nu, the columns it adds to record.csv
+/// and their values for a View; one that fills a table has its file, the columns of it, the rows it adds each
+/// time, and a function that appends rows. Its place here is that of its columns. A new one
 /// is a file of its own and a word in this list.
 using Observer = std::variant<ContactNumbers, Energy, KineticStress, ContactFabric, Overlap, Unbalanced,
                               Percolation, Nonaffine, ForceDistribution, OverlapDistribution, Radius>;
@@ -63,6 +64,8 @@ class Observers {
   explicit Observers(const std::vector<std::string>& asked);
 
   const std::vector<std::string>& columns() const { return columns_; }
+  /// What observe() must be told of beside nu.
+  const Wanted& reads() const { return reads_; }
   /// Values of columns() for row `row` of the record; tables are filled too.
   std::vector<double> observe(const Dynamics& dynamics, const Quads& velocity, const Measurement& measured,
                               const Material& material, const SignConvention& sign, std::size_t segment,
@@ -91,6 +94,7 @@ class Observers {
   std::vector<std::string> columns_;
   std::vector<Table> tables_;  ///< of those that tabulate, in order
   bool walks_contacts_ = false;
+  Wanted reads_;
 };
 
 }  // namespace grainlaw::dem::observe

@@ -14,6 +14,7 @@ struct Overlap {
   static constexpr std::array<std::string_view, 1> columns{"overlap"};
   static constexpr std::size_t grain_bytes = 0;
   static constexpr bool walks_contacts = true;
+  static constexpr Wanted reads{};
   std::array<double, 1> values(const View& view) const {
     return {view.network.mean_overlap / view.material.r_mean};
   }
@@ -25,6 +26,7 @@ struct OverlapDistribution {
   static constexpr std::array<std::string_view, 0> columns{};
   static constexpr std::size_t grain_bytes = 0;
   static constexpr bool walks_contacts = true;
+  static constexpr Wanted reads{};
   static constexpr std::string_view file = "overlap_distribution.csv";
   static constexpr auto table_columns = Histogram::columns;
   static constexpr std::size_t table_rows = Histogram::bins;

@@ -16,6 +16,7 @@ struct Percolation {
   static constexpr std::array<std::string_view, 4> columns{"xi_x", "xi_y", "xi_z", "percolating"};
   static constexpr std::size_t grain_bytes = 72;
   static constexpr bool walks_contacts = true;
+  static constexpr Wanted reads{};
   static constexpr double strong = 2.2;
   std::array<double, 4> values(const View& view) const;
 };

@@ -18,6 +18,7 @@ struct Radius {
   static constexpr std::array<std::string_view, 0> columns{};
   static constexpr std::size_t grain_bytes = 0;
   static constexpr bool walks_contacts = true;
+  static constexpr Wanted reads{};
   static constexpr std::string_view file = "radius.csv";
   static constexpr std::array<std::string_view, 5> table_columns{"r_sc", "grains", "overlap", "C_star",
                                                                  "F_dev"};

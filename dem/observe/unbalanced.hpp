@@ -14,6 +14,7 @@ struct Unbalanced {
   static constexpr std::array<std::string_view, 1> columns{"unbalanced"};
   static constexpr std::size_t grain_bytes = sizeof(Vec3);
   static constexpr bool walks_contacts = true;
+  static constexpr Wanted reads{};
   std::array<double, 1> values(const View& view) const;
 };
 

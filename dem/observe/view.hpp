@@ -1,4 +1,4 @@
-// What an observer sees of a packing: the state, the standard measurement, and the network of its contacts.
+// What an observer sees of a packing: the state, what was measured of it, and the network of its contacts.
 #pragma once
 
 #include <array>
@@ -40,8 +40,8 @@ struct Network {
 struct View {
   const Material& material;
   const Dynamics& dynamics;
-  const Quads& velocity;  ///< fluctuation velocity, in the order of the grains
-  const Measurement& measured;
+  const Quads& velocity;        ///< fluctuation velocity, in the order of the grains
+  const Measurement& measured;  ///< nu, and what the observers read
   const SignConvention& sign;
   std::size_t segment;
   const Network& network;  ///< empty unless an observer asked for walks the contacts

@@ -25,7 +25,7 @@ Recorder::Recorder(const Scene& scene, std::filesystem::path dir, double nu_star
       requests_(scene.measure.snapshots),
       snapshot_requests_(requests_.size()),
       nu_start_(nu_start),
-      rows_(scene.material, scene.legs(nu_start), nu_start, scene.measure.observe),
+      rows_(scene.material, scene.legs(nu_start), nu_start, scene.measure.standard, scene.measure.observe),
       moduli_(scene.material, scene.legs(nu_start)) {
   requests_.insert(requests_.end(), scene.measure.moduli.begin(), scene.measure.moduli.end());
 }

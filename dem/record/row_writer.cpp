@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "grainlaw/element/components.hpp"
 #include "grainlaw/element/error.hpp"
@@ -17,81 +18,109 @@ constexpr double quasi_static = 1e-3;  // E_k/E_p of the thesis's data stays bel
 constexpr double bearing_pressure =
     1e-3;  // P* from which the grains bear load, be it at rest or by their motion
 
-/// One row by column name.
+/// The standard values of one row, by column name.
 class Row {
  public:
-  Row() : values_(record_columns().size(), undefined) {}
+  explicit Row(const std::vector<std::string>& columns)
+      : columns_(columns), values_(columns.size(), undefined) {}
   void set(const char* column, double value) {
-    const auto& names = record_columns();
-    const auto at = std::find(names.begin(), names.end(), column);
-    if (at == names.end()) throw Error(std::string("a DEM record has no column ") + column);
-    values_[static_cast<std::size_t>(at - names.begin())] = value;
+    const auto at = std::find(columns_.begin(), columns_.end(), column);
+    if (at == columns_.end()) throw Error(std::string("this record has no column ") + column);
+    values_[static_cast<std::size_t>(at - columns_.begin())] = value;
   }
   void set(const ComponentNames& columns, const Sym6& tensor, double factor) {
     for (std::size_t c = 0; c < 6; ++c) set(columns[c], factor * tensor[c]);
   }
-  /// The row, with what observers add after it.
-  std::vector<double> with(const std::vector<double>& more) const {
-    std::vector<double> all = values_;
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
+  std::vector<double> take() { return std::move(values_); }
 
  private:
+  const std::vector<std::string>& columns_;
   std::vector<double> values_;
 };
 
-std::vector<std::string> with(std::vector<std::string> columns, const std::vector<std::string>& more) {
-  columns.insert(columns.end(), more.begin(), more.end());
-  return columns;
+Wanted wanted_for(const std::vector<std::string>& groups) {
+  const auto asked = [&](const char* group) {
+    return std::find(groups.begin(), groups.end(), group) != groups.end();
+  };
+  return {.stress = asked("stress"),
+          .fabric = asked("fabric"),
+          .coordination = asked("coordination"),
+          .energies = asked("energy_ratio")};
+}
+
+template <class T>
+std::vector<T> with(std::vector<T> list, const std::vector<T>& more) {
+  list.insert(list.end(), more.begin(), more.end());
+  return list;
 }
 
 }  // namespace
 
 RowWriter::RowWriter(const Material& material, const std::vector<Leg>& legs, double nu_start,
-                     const std::vector<std::string>& observe)
+                     const std::vector<std::string>& standard, const std::vector<std::string>& observe)
     : material_(material),
       sign_(legs),
       nu_start_(nu_start),
       observers_(observe),
-      record_(with(record_columns(), observers_.columns())) {}
+      columns_(record_columns_with(standard)),
+      standard_(wanted_for(standard)),
+      wanted_(standard_ | observers_.reads()),
+      record_(with(columns_, observers_.columns())) {}
 
 double RowWriter::eps_vol(const Measurement& m) const { return std::log(m.nu / nu_start_); }
 
+double RowWriter::pressure(const Measurement& m) const {
+  return trace(m.stress) / 3 * (1 / material_.stress_unit());
+}
+
 void RowWriter::append(const Dynamics& dynamics, std::size_t segment, double eps_dev, double time) {
   const Quads velocity = dynamics.velocities();
+  const Grains& grains = dynamics.grains();
   const Measurement m =
-      measure(dynamics.law(), dynamics.grains(), velocity, dynamics.cell(), dynamics.neighbours().pairs());
-  if (!std::isfinite(m.kinetic) || !std::isfinite(m.elastic))
+      measure(dynamics.law(), grains, velocity, dynamics.cell(), dynamics.neighbours().pairs(), wanted_);
+  const bool stable = wanted_.energies ? std::isfinite(m.kinetic) && std::isfinite(m.elastic)
+                                       : std::isfinite(kinetic_energy(grains, velocity));
+  if (!stable)
     throw Error("the motion of the grains became unstable at nu = " + to_text(m.nu) +
                 ", t = " + to_text(time) + " us; take a smaller measure.time_step or rate");
+  record_.append(with(standard_values(m, segment, eps_dev, time),
+                      observers_.observe(dynamics, velocity, m, material_, sign_, segment, record_.rows())));
+  watch(m);
+}
+
+std::vector<double> RowWriter::standard_values(const Measurement& m, std::size_t segment, double eps_dev,
+                                               double time) const {
   const double per_unit = 1 / material_.stress_unit();
-  const double pressure = trace(m.stress) / 3 * per_unit;
-  const double shear = sign_.signed_deviator(m.stress, segment) * per_unit;
-  Row row;
+  Row row(columns_);
   row.set("segment", static_cast<double>(segment));
   row.set("eps_vol", eps_vol(m));
   row.set("eps_dev", eps_dev);
   row.set("nu", m.nu);
-  row.set("P", pressure);
-  row.set("sigma_dev", shear);
-  row.set("s_dev", pressure > 0 ? shear / pressure : undefined);
-  row.set("F_v", trace(m.fabric));
-  row.set("F_dev", sign_.signed_deviator(m.fabric, segment));
-  row.set("C", m.C);
-  row.set("C_star", m.C_star);
-  row.set("f_NR", m.f_NR);
   row.set("t", time);
-  row.set("Ek_over_Ep", m.elastic > 0 ? m.kinetic / m.elastic : undefined);
-  row.set(stress_columns, m.stress, per_unit);
-  row.set(fabric_columns, m.fabric, 1);
-  record_.append(
-      row.with(observers_.observe(dynamics, velocity, m, material_, sign_, segment, record_.rows())));
-  watch(m, pressure);
+  if (standard_.stress) {
+    const double P = pressure(m), shear = sign_.signed_deviator(m.stress, segment) * per_unit;
+    row.set("P", P);
+    row.set("sigma_dev", shear);
+    row.set("s_dev", P > 0 ? shear / P : undefined);
+    row.set(stress_columns, m.stress, per_unit);
+  }
+  if (standard_.fabric) {
+    row.set("F_v", trace(m.fabric));
+    row.set("F_dev", sign_.signed_deviator(m.fabric, segment));
+    row.set(fabric_columns, m.fabric, 1);
+  }
+  if (standard_.coordination) {
+    row.set("C", m.C);
+    row.set("C_star", m.C_star);
+    row.set("f_NR", m.f_NR);
+  }
+  if (standard_.energies) row.set("Ek_over_Ep", m.elastic > 0 ? m.kinetic / m.elastic : undefined);
+  return row.take();
 }
 
-void RowWriter::watch(const Measurement& m, double pressure) {
-  if (pressure < bearing_pressure || !(m.elastic > 0)) return;
+void RowWriter::watch(const Measurement& m) {
+  if (!standard_.stress || !standard_.energies) return;
+  if (pressure(m) < bearing_pressure || !(m.elastic > 0)) return;
   const double ratio = m.kinetic / m.elastic;
   ++bearing_;
   if (ratio > quasi_static) ++restless_;

@@ -268,7 +268,7 @@ TrialCost try_flow(const Scene& scene, const State& flowing, const State& one_co
   Trial trial(scene.material, flowing, main);
   trial.flow_in();
   trial.steps();
-  trial.rows(scene.measure.observe);
+  trial.rows(scene.measure.standard, scene.measure.observe);
   if (!scene.measure.snapshots.empty()) trial.snapshot();
   trial.checkpoint();
   if (options.threads > 1) trial.threads(options.threads);

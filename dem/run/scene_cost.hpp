@@ -40,7 +40,7 @@ struct SceneCost {
   double force_seconds = 0;                            ///< of a step: contact forces
   double damping_seconds = 0;                          ///< of these the viscous term
   double motion_seconds = 0;                           ///< of a step: motion and lists
-  double row_seconds = 0;                              ///< of a row: the standard columns
+  double row_seconds = 0;                              ///< of a row: the standard columns asked for
   std::size_t rows = 0, snapshots = 0;
   double snapshot_seconds = 0, snapshot_bytes = 0;  ///< each
   double checkpoint_every = 0;                      ///< s

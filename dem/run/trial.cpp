@@ -174,27 +174,35 @@ double Trial::seconds_between_steps(Call&& call, Before&& before) {
   return spent / static_cast<double>(calls);
 }
 
-void Trial::rows(const std::vector<std::string>& asked) {
-  const Leg leg{};
-  RowWriter writer(material_, {leg}, cost_.nu);
+double Trial::seconds_to_measure(const Wanted& wanted) {
+  return seconds_between_steps([&] { dynamics_.measure(wanted); }, [] {});
+}
+
+double Trial::seconds_to_observe(const std::string& name, const Wanted& standard) {
+  observe::Observers one({name});
+  const SignConvention sign({Leg{}});
+  std::size_t row = 0;
+  Quads velocity;
+  Measurement measured;
+  const auto measure = [&] { velocity = dynamics_.velocities(), measured = dynamics_.measure(one.reads()); };
+  const auto observe = [&] { one.observe(dynamics_, velocity, measured, material_, sign, 0, row++); };
+  measure();
+  observe();  // the first has nothing to compare with
+  double seconds = seconds_between_steps(observe, measure);
+  for (const auto& table : one.tables())
+    seconds += seconds_of([&] { table.rows.to_csv(); }, 0, 1) / static_cast<double>(row);
+  const Wanted both = standard | one.reads();
+  if (both != standard) seconds += std::max(seconds_to_measure(both) - seconds_to_measure(standard), 0.0);
+  return seconds;
+}
+
+void Trial::rows(const std::vector<std::string>& standard, const std::vector<std::string>& observers) {
+  RowWriter writer(material_, {Leg{}}, cost_.nu, standard);
   const double append = seconds_between_steps([&] { writer.append(dynamics_, 0, 0, 0); }, [] {});
   cost_.row = (append + seconds_per_row(writer.record())) / grains_;
-  cost_.contacts = static_cast<double>(dynamics_.measure().contacts) / grains_;
-  const SignConvention sign({leg});
-  for (const std::string& name : asked) {
-    observe::Observers one({name});
-    std::size_t row = 0;
-    Quads velocity;
-    Measurement measured;
-    const auto measure = [&] { velocity = dynamics_.velocities(), measured = dynamics_.measure(); };
-    const auto observe = [&] { one.observe(dynamics_, velocity, measured, material_, sign, 0, row++); };
-    measure();
-    observe();  // the first has nothing to compare with
-    double seconds = seconds_between_steps(observe, measure);
-    for (const auto& table : one.tables())
-      seconds += seconds_of([&] { table.rows.to_csv(); }, 0, 1) / static_cast<double>(row);
-    cost_.observers.push_back(seconds / grains_);
-  }
+  cost_.contacts = dynamics_.measure(Wanted{.coordination = true}).contacts / grains_;
+  for (const std::string& name : observers)
+    cost_.observers.push_back(seconds_to_observe(name, writer.wanted()) / grains_);
 }
 
 void Trial::threads(int threads) {

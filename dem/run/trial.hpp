@@ -38,8 +38,9 @@ class Trial {
   /// longer.
   void flow_in();
   void steps();
-  /// Of the standard columns, and of each observer that is asked for.
-  void rows(const std::vector<std::string>& asked);
+  /// Of the columns of the groups `standard`, and of each observer, with what is measured for it beside
+  /// these.
+  void rows(const std::vector<std::string>& standard, const std::vector<std::string>& observers);
   /// What `threads` hold.
   void threads(int threads);
   void snapshot();
@@ -52,6 +53,8 @@ class Trial {
  private:
   template <class Call, class Before>
   double seconds_between_steps(Call&& call, Before&& before);
+  double seconds_to_measure(const Wanted& wanted);
+  double seconds_to_observe(const std::string& name, const Wanted& standard);
   void step();
 
   const Material& material_;

@@ -44,10 +44,10 @@ StateRequest read_request(Reader& reader) {
   return request;
 }
 
-/// In the order of their columns.
-std::vector<std::string> read_observers(Reader& reader, const std::vector<std::string>& fallback) {
-  const std::vector<std::string>& known = observe::names();
-  std::vector<std::string> asked = read_words(reader, "observe", known, fallback);
+/// Some of the words that are known, in their order, which is that of their columns.
+std::vector<std::string> read_asked(Reader& reader, const char* key, const std::vector<std::string>& known,
+                                    const std::vector<std::string>& fallback) {
+  std::vector<std::string> asked = read_words(reader, key, known, fallback);
   const auto rank = [&](const std::string& name) { return std::find(known.begin(), known.end(), name); };
   std::sort(asked.begin(), asked.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   return asked;
@@ -227,7 +227,8 @@ Measure Measure::read(Reader reader, const Measure& fallback) {
   check_different(reader, measure.moduli);
   measure.time_step = read_step(reader, "time_step", fallback.time_step);
   measure.time_step_gas = read_step(reader, "time_step_gas", fallback.time_step_gas);
-  measure.observe = read_observers(reader, fallback.observe);
+  measure.standard = read_asked(reader, "standard", column_groups(), fallback.standard);
+  measure.observe = read_asked(reader, "observe", observe::names(), fallback.observe);
   reader.finish();
   return measure;
 }
@@ -235,7 +236,8 @@ Measure Measure::read(Reader reader, const Measure& fallback) {
 Json Measure::to_json() const {
   return {
       {"rows", rows},           {"snapshots", requests_json(snapshots)}, {"moduli", requests_json(moduli)},
-      {"time_step", time_step}, {"time_step_gas", time_step_gas},        {"observe", observe}};
+      {"time_step", time_step}, {"time_step_gas", time_step_gas},        {"standard", standard},
+      {"observe", observe}};
 }
 
 Scene Scene::read(Reader reader, const std::filesystem::path& scene_dir) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "grainlaw/dem/files/snapshot.hpp"
+#include "grainlaw/element/column_groups.hpp"
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/material.hpp"
 #include "grainlaw/element/path.hpp"
@@ -67,7 +68,8 @@ struct Measure {
   std::vector<StateRequest> moduli;  ///< states whose small-strain moduli are wanted, no two the same
   double time_step = 0.2;            ///< over the smallest contact duration
   double time_step_gas = 0.05;       ///< the same, during preparation
-  std::vector<std::string> observe;  ///< beside the standard columns; of observe::names(), in their order
+  std::vector<std::string> standard = column_groups();  ///< some of these groups of columns, in their order
+  std::vector<std::string> observe;  ///< beside these columns; of observe::names(), in their order
 
   /// What is missing comes from `fallback` (in a campaign, the measure of all tests).
   static Measure read(Reader reader, const Measure& fallback);

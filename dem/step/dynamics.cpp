@@ -135,8 +135,8 @@ Quads Dynamics::velocities() const {
   return v;
 }
 
-Measurement Dynamics::measure() const {
-  return dem::measure(law_, grains(), velocities(), cell_, neighbours_.pairs());
+Measurement Dynamics::measure(const Wanted& wanted) const {
+  return dem::measure(law_, grains(), velocities(), cell_, neighbours_.pairs(), wanted);
 }
 
 Sym6 Dynamics::static_stress() const {

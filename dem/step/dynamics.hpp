@@ -81,7 +81,7 @@ class Dynamics {
 
   /// Fluctuation velocities of the full step, mm/us, in the order of grains().
   Quads velocities() const;
-  Measurement measure() const;
+  Measurement measure(const Wanted& wanted = Wanted::everything()) const;
   /// measure().stress but for the velocity, which is the one that the forces of this step saw (it is
   /// predicted, O(dt^3) off): cheap enough for a servo.
   Sym6 static_stress() const;

@@ -86,10 +86,30 @@ TEST_F(Simulate, ExplainsAndMakesNothing) {
   EXPECT_THAT(outcome.out, testing::ContainsRegex("compress the gas +0.3 to 0.64"));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("iso \\(1 of 1\\) +0.64 to 0.7"));
   EXPECT_THAT(outcome.out, HasSubstr("measured in 11 rows"));
+  EXPECT_THAT(
+      outcome.out,
+      testing::ContainsRegex("standard columns +[0-9].*\n    stress, fabric, coordination, energy_ratio\n"));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("percolation +[0-9]"));
   EXPECT_THAT(outcome.out, testing::ContainsRegex("in all: .* particle-steps, .* of one core"));
   for (const auto& file : fs::directory_iterator(folder))
     EXPECT_TRUE(file.is_symlink() || !file.is_directory()) << file.path();
+}
+
+TEST_F(Simulate, ExplainsWhichColumnsASceneLeavesOut) {
+  const auto explained = [&](const std::string& standard) {
+    write("s.json", R"({"preparation": {"count": 64, "nu": 0.6, "rate": 1e-2, "relax": {"duration": 5}},
+      "path": {"segments": [{"mode": "d2", "amount": 0.001, "rate": 1e-3}]},
+      "measure": {"rows": 2, "standard": )" +
+                        standard + "}}");
+    const Outcome outcome = run({"simulate", "s.json", "--explain"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  EXPECT_THAT(explained(R"(["energy_ratio", "stress"])"),
+              HasSubstr("\n    stress, energy_ratio; measure.standard leaves out fabric, coordination\n"));
+  EXPECT_THAT(explained("[]"),
+              HasSubstr("\n    none but segment, strains, nu and t; measure.standard leaves out "
+                        "stress, fabric, coordination, energy_ratio\n"));
 }
 
 TEST_F(Simulate, ExplainsForAsLongAsItIsTold) {

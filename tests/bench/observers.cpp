@@ -3,11 +3,11 @@
 //        grainlaw_bench_observers memory
 //
 // Prints the time of a whole test, measured and as explained; the bare scene against the kernel's own loop;
-// a step of the bare scene, a row of the standard columns and what each observer alone adds to a row,
-// measured and as explained; and the same test with each other option alone. Processor seconds of this
-// thread, medians over the rounds; ratios round by round, median and range. With `memory`, the most memory of
-// runs against what --explain says, each run in a process of its own. Steps and rows are explained by trials
-// alone, as of scenes too long to be run to be explained.
+// a step of the bare scene, a row of the standard columns, of each group of them alone and of none, and what
+// each observer alone adds to a row, measured and as explained; and the same test with each other option
+// alone. Processor seconds of this thread, medians over the rounds; ratios round by round, median and range.
+// With `memory`, the most memory of runs against what --explain says, each run in a process of its own. Steps
+// and rows are explained by trials alone, as of scenes too long to be run to be explained.
 #include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -31,6 +31,7 @@
 #include "grainlaw/dem/run/leg_trial.hpp"
 #include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/step/dynamics.hpp"
+#include "grainlaw/element/column_groups.hpp"
 #include "grainlaw/element/error.hpp"
 
 namespace {
@@ -223,6 +224,24 @@ void compare_memory(const fs::path& dir) {
   }
 }
 
+/// A row of the standard columns: of all, of each group alone, and of none.
+std::vector<std::pair<std::string, std::vector<std::string>>> row_kinds() {
+  std::vector<std::pair<std::string, std::vector<std::string>>> kinds{{"standard columns", column_groups()}};
+  for (const std::string& group : column_groups()) kinds.push_back({group + " alone", {group}});
+  kinds.push_back({"no standard columns", {}});
+  return kinds;
+}
+
+void measure_rows(const fs::path& snapshot, const fs::path& dir, Times& spent, Times& said) {
+  for (const auto& [name, standard] : row_kinds()) {
+    dem::Scene with = shear(snapshot, short_strain, rows), without = shear(snapshot, short_strain, 1);
+    with.measure.standard = without.measure.standard = standard;
+    const double beside = seconds_to_run(without, dir);
+    spent[name].push_back((seconds_to_run(with, dir) - beside) / static_cast<double>(rows - 1));
+    said[name].push_back(dem::cost_of(with, by_trial).row_seconds);
+  }
+}
+
 /// One round: each scene once, and once what --explain says of it.
 void measure_round(const fs::path& snapshot, const fs::path& dir, std::uint64_t& steps, Times& spent,
                    Times& said) {
@@ -242,13 +261,10 @@ void measure_round(const fs::path& snapshot, const fs::path& dir, std::uint64_t&
   spent["kernel going on"].push_back(kernel - kernel_begun);
   spent["bare going on"].push_back(run - run_begun);
   said["bare"].push_back(dem::cost_of(bare, by_trial).seconds());
-  const double without = seconds_to_run(shear(snapshot, short_strain, 1), dir);
-  const double standard = seconds_to_run(shear(snapshot, short_strain, rows), dir);
-  spent["standard columns"].push_back((standard - without) / static_cast<double>(rows - 1));
+  measure_rows(snapshot, dir, spent, said);
   dem::Scene all = shear(snapshot, short_strain, rows);
   all.measure.observe = dem::observe::names();
   const dem::SceneCost cost = dem::cost_of(all, by_trial);
-  said["standard columns"].push_back(cost.row_seconds);
   for (const auto& observer : cost.observers) {
     // Each beside its own run without: a machine's speed drifts within a round.
     const double with = seconds_to_run(shear(snapshot, short_strain, rows, observer.name), dir);
@@ -290,8 +306,13 @@ void print(const Times& spent, const Times& said, std::uint64_t steps, const fs:
                 1e6 * explained, ratio.middle, ratio.least, ratio.most, measured / step);
   };
   line("bare", static_cast<double>(steps));
-  line("standard columns", 1);
+  for (const auto& [name, standard] : row_kinds()) line(name, 1);
   for (const auto& name : dem::observe::names()) line(name, 1);
+  std::printf("rows over one of all standard columns:\n");
+  for (const auto& [name, standard] : row_kinds()) {
+    const Ratios share = ratios_of(spent.at(name), spent.at("standard columns"));
+    std::printf("%-24s %.3f (%.3f-%.3f)\n", name.c_str(), share.middle, share.least, share.most);
+  }
   std::printf("whole tests, each with one option:\n");
   for (const auto& [name, test] : options(snapshot)) line(name, 1);
 }

@@ -20,8 +20,8 @@ namespace {
 using namespace grainlaw;
 
 void print(const char* when, const dem::Measurement& m) {
-  std::printf("%s stress %.15g %.15g %.15g contacts %llu\n", when, m.stress[0], m.stress[1], m.stress[2],
-              static_cast<unsigned long long>(m.contacts));
+  std::printf("%s stress %.15g %.15g %.15g contacts %.0f\n", when, m.stress[0], m.stress[1], m.stress[2],
+              m.contacts);
 }
 
 void flow(const dem::State& state, const Material& material, std::uint64_t steps, double fraction,

@@ -255,6 +255,26 @@ TEST(Campaign, RefusesSnapshotsOffThePath) {
               StartsWith("c.json: tests[0].measure.snapshots[0].nu: must lie in"));
 }
 
+TEST(Campaign, RefusesRecordsThatLackColumns) {
+  const auto campaign = [](const std::string& measure, const std::string& of_test) {
+    std::string test = iso;
+    test.insert(1, R"("measure": )" + of_test + ", ");
+    return R"({"name": "c", "seeds": [1], "measure": )" + measure + R"(, "tests": [)" + test + "]}";
+  };
+  EXPECT_EQ(
+      refusal(campaign(R"({"standard": ["stress", "coordination", "energy_ratio"]})", "{}")),
+      "c.json: measure.standard: must have \"fabric\" in a campaign, whose fits, comparisons and report "
+      "read its columns");
+  EXPECT_EQ(refusal(campaign("{}", R"({"standard": []})")),
+            "c.json: tests[0].measure.standard: must have \"stress\" in a campaign, whose fits, comparisons "
+            "and report read its columns");
+  EXPECT_THAT(refusal(campaign("{}", R"({"standard": ["stres"]})")),
+              HasSubstr("tests[0].measure.standard[0]: must be one of stress, "));
+  const Campaign good =
+      campaign_of(campaign(R"({"standard": ["energy_ratio", "fabric", "stress", "coordination"]})", "{}"));
+  EXPECT_EQ(good.tests[0].measure.standard, column_groups());
+}
+
 TEST(Campaign, RefusesWhatNobodyAskedFor) {
   EXPECT_THAT(refusal(R"({"name": "c", "seed": [1], "seeds": [1], "tests": [)" + iso + "]}"),
               StartsWith("c.json: seed: unknown key, did you mean seeds?"));

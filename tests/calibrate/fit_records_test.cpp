@@ -313,6 +313,28 @@ TEST_F(FitRecords, RefuseARecordWithoutAColumnNamingIt) {
   EXPECT_THAT(message_of([&] { fitted(); }), AllOf(HasSubstr("iso-s1/record.csv"), HasSubstr("C_star")));
 }
 
+/// Of a scene that says which columns it writes: the fits need them all, also the one that tells rows at
+/// rest.
+TEST_F(FitRecords, RefuseARecordWhoseSceneLeavesColumnsOut) {
+  const auto leave_out = [&](const std::string& column, const std::string& standard) {
+    write_campaign(dir(), thesis_);
+    edit(record("iso-s1") / "record.csv",
+         [&](std::string text) { return text.replace(text.find(column), column.size(), "other"); });
+    edit(record("iso-s1") / "scene.json", [&](const std::string& text) {
+      Json scene = Json::parse(text);
+      scene["measure"]["standard"] = Json::parse(standard);
+      return scene.dump(1);
+    });
+    return message_of([&] { fitted(); });
+  };
+  EXPECT_THAT(leave_out("F_dev", R"(["stress", "coordination", "energy_ratio"])"),
+              AllOf(HasSubstr("iso-s1/record.csv: F_dev: column is missing"),
+                    HasSubstr("where measure.standard of its scene has \"fabric\"")));
+  EXPECT_THAT(leave_out("Ek_over_Ep", R"(["stress", "fabric", "coordination"])"),
+              AllOf(HasSubstr("iso-s1/record.csv: Ek_over_Ep: column is missing"),
+                    HasSubstr("where measure.standard of its scene has \"energy_ratio\"")));
+}
+
 TEST_F(FitRecords, RefuseAnEmptyFieldWhereANumberMustBe) {
   std::vector<Row> rows = thesis_.cycle("iso");
   rows[5].P = std::nan("");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "grainlaw/calibrate/campaign.hpp"
@@ -10,6 +11,7 @@
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/scene/provenance.hpp"
 #include "grainlaw/dem/scene/scene.hpp"
+#include "grainlaw/element/column_groups.hpp"
 #include "grainlaw/element/json.hpp"
 #include "grainlaw/element/moduli_table.hpp"
 #include "grainlaw/element/path.hpp"
@@ -147,7 +149,28 @@ TEST(Schema, ColumnsOfARecord) {
   auto columns = record_columns();
   for (const auto& column : dem::observe::columns(dem::observe::names())) columns.push_back(column);
   EXPECT_EQ(keys(file["properties"]), columns);
-  EXPECT_EQ(file["required"].get<std::vector<std::string>>(), prediction_columns());
+  // Those of a prediction: the ones of no group, and the rest of them where it is no DEM record.
+  std::set<std::string> required;
+  for (const Json& list : {file["required"], file["else"]["required"]})
+    for (const auto& column : list) required.insert(column);
+  EXPECT_EQ(required, std::set<std::string>(prediction_columns().begin(), prediction_columns().end()));
+}
+
+/// Each column of a group asks for all others, if by way of its first.
+TEST(Schema, GroupsOfColumnsOfARecord) {
+  const Json needed = schema("record")["then"]["dependentRequired"];
+  std::map<std::string, std::vector<std::string>> groups;
+  for (const std::string& column : record_columns())
+    if (const std::string group = group_of_column(column); !group.empty()) groups[group].push_back(column);
+  EXPECT_EQ(keys(Json(groups)).size(), column_groups().size());
+  for (const auto& [group, columns] : groups) {
+    const std::vector<std::string> others(columns.begin() + 1, columns.end());
+    if (others.empty()) continue;
+    EXPECT_EQ(needed.at(columns[0]).get<std::vector<std::string>>(), others) << group;
+    for (const std::string& other : others) EXPECT_EQ(needed.at(other), Json::array({columns[0]})) << other;
+  }
+  const Json asked = schema("scene")["$defs"]["measure"]["properties"]["standard"];
+  EXPECT_EQ(asked["items"]["enum"].get<std::vector<std::string>>(), column_groups());
 }
 
 }  // namespace

@@ -109,6 +109,19 @@ TEST_F(Checkpoints, AStoppedTestGoesOnAsIfItHadNot) {
   expect_same("stopped", "whole");
 }
 
+TEST_F(Checkpoints, ATestOfFewColumnsGoesOnToo) {
+  scene.measure.standard = {"coordination"};
+  scene.measure.observe = {"energy"};
+  ASSERT_TRUE(run("whole"));
+  while (!run("stopped", 5)) {
+  }
+  expect_same("stopped", "whole");
+  // The other columns are those of another scene.
+  ASSERT_FALSE(run("other", 5));
+  scene.measure.standard = {};
+  EXPECT_THAT(refusal("other"), HasSubstr("measure.standard"));
+}
+
 TEST_F(Checkpoints, AnIncrementMayBeInterrupted) {
   // Increments that take hundreds of passes, left in their midst, by another thread, after ever longer times.
   scene = scene_of(R"({

@@ -77,6 +77,19 @@ TEST(Cost, NothingObservedCostsNothing) {
   EXPECT_GT(cost.row_seconds, 0);
 }
 
+/// A row of no standard columns takes an eighth of one of all; half of it leaves room for a busy machine.
+TEST(Cost, OfARowIsThatOfTheColumnsAskedFor) {
+  const auto row = [](const std::string& standard) {
+    return cost_of(
+               scene_of(R"({"preparation": {"count": 2000, "nu": 0.7, "rate": 2e-2, "relax": {"duration": 5}},
+      "path": {"segments": [{"mode": "d2", "amount": 1e-4}]}, "measure": {"rows": 1)" +
+                        standard + "}}"),
+               {1, 60, 1e-6})
+        .row_seconds;
+  };
+  EXPECT_LT(row(R"(, "standard": [])"), 0.5 * row(""));
+}
+
 /// A state takes much longer than a row; what it does not ask for, nothing.
 TEST(Cost, ModuliCountWithTheRest) {
   const std::string head = R"({"preparation": {"count": 64, "nu": 0.7},

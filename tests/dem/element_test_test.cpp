@@ -13,6 +13,7 @@
 
 #include "grainlaw/dem/files/snapshot.hpp"
 #include "grainlaw/dem/observe/names.hpp"
+#include "grainlaw/element/column_groups.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/record.hpp"
@@ -194,6 +195,73 @@ TEST_F(ElementTest, ObserversAddColumnsAndTablesAndChangeNothingElse) {
   }
   with("[" + all + "]", "again");
   EXPECT_EQ(read_file(dir / "seen" / "record.csv"), read_file(dir / "again" / "record.csv"));
+}
+
+/// A short shear that leaves out groups of columns.
+class Columns : public ElementTest {
+ protected:
+  Record record(const std::string& standard, const std::string& observe, const std::string& name) {
+    const RunSummary summary = run_element_test(
+        scene_of(R"({"preparation": {"count": 60, "seed": 5, "rate": 1e-3, "relax": {"duration": 50}},
+          "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.7}, "rate": 5e-4},
+                                {"mode": "d2", "amount": 0.02, "rate": 5e-4}]},
+          "measure": {"rows": 5, "snapshots": [{"segment": 1}], "standard": )" +
+                 standard + R"(, "observe": )" + observe + "}}"),
+        dir / name);
+    warnings = summary.warnings;
+    return Record::read_csv(dir / name / "record.csv");
+  }
+  std::vector<std::string> warnings;
+};
+
+/// The columns of `part` are those of `whole`, to the bit.
+void expect_same_columns(const Record& part, const Record& whole) {
+  for (const auto& column : part.columns())
+    for (std::size_t row = 0; row < whole.rows(); ++row)
+      EXPECT_TRUE(part[column][row] == whole[column][row] ||
+                  (std::isnan(part[column][row]) && std::isnan(whole[column][row])))
+          << column << " in row " << row;
+}
+
+TEST_F(Columns, ThoseNotAskedForAreNotThereAndTheRestIsTheSame) {
+  const Record whole = record(R"(["energy_ratio", "fabric", "stress", "coordination"])", "[]", "whole");
+  EXPECT_EQ(whole.columns(), record_columns());
+  EXPECT_FALSE(warnings.empty());  // so fast, the energy ratio is no small one
+  const State end = read_frame(dir / "whole/snapshots.h5", {});
+  std::size_t left_out = 0;
+  for (const std::string group : {"stress", "fabric", "coordination", "energy_ratio", ""}) {
+    const Record part = record(group.empty() ? "[]" : "[\"" + group + "\"]", "[]", "only-" + group);
+    EXPECT_EQ(part.columns(),
+              record_columns_with(group.empty() ? std::vector<std::string>{} : std::vector{group}));
+    expect_same_columns(part, whole);
+    EXPECT_TRUE(warnings.empty()) << group;
+    const State there = read_frame(dir / ("only-" + group) / "snapshots.h5", {});
+    EXPECT_EQ(there.position, end.position) << group;
+    EXPECT_EQ(there.velocity, end.velocity) << group;
+    left_out += whole.columns().size() - part.columns().size();
+  }
+  // 27 columns, of which 6 are always there: each of the other 21 is left out four times of five.
+  EXPECT_EQ(left_out, 4u * 21);
+}
+
+TEST_F(Columns, ObserversAreTheSameWithoutThem) {
+  std::string all;
+  for (const auto& name : observe::names()) all += (all.empty() ? "\"" : ", \"") + name + "\"";
+  const Record whole = record(R"(["stress", "fabric", "coordination", "energy_ratio"])", "[" + all + "]",
+                              "whole"),
+               bare = record("[]", "[" + all + "]", "bare");
+  expect_same_columns(bare, whole);
+  EXPECT_EQ(bare.columns().size(), 6 + observe::columns(observe::names()).size());
+  for (const auto& file : observe::tables(observe::names()))
+    EXPECT_EQ(read_file(dir / "bare" / file), read_file(dir / "whole" / file)) << file;
+  // Alone as well: none lives on what another one asked for.
+  for (const auto& name : observe::names()) {
+    const Record alone = record("[]", "[\"" + name + "\"]", name);
+    EXPECT_EQ(alone.columns().size(), 6 + observe::columns({name}).size());
+    expect_same_columns(alone, whole);
+    for (const auto& file : observe::tables({name}))
+      EXPECT_EQ(read_file(dir / name / file), read_file(dir / "whole" / file)) << file;
+  }
 }
 
 TEST_F(ElementTest, ContinuesFromASnapshot) {

@@ -30,11 +30,11 @@ SignConvention d2_signs() {
   return SignConvention({leg});
 }
 
-/// What `observers` say of a state, by column.
+/// What `observers` say of a state, by column; nothing is measured for them but what they say they read.
 std::map<std::string, double> see(Observers& observers, const Material& m, const State& state) {
   const Dynamics dynamics(m, state);
-  const auto values =
-      observers.observe(dynamics, dynamics.velocities(), dynamics.measure(), m, d2_signs(), 0, 0);
+  const auto values = observers.observe(dynamics, dynamics.velocities(), dynamics.measure(observers.reads()),
+                                        m, d2_signs(), 0, 0);
   EXPECT_EQ(values.size(), observers.columns().size());
   std::map<std::string, double> by_column;
   for (std::size_t k = 0; k < values.size(); ++k) by_column[observers.columns()[k]] = values[k];
@@ -305,6 +305,22 @@ TEST_F(ObserversInvariance, AxisSwap) {
   const auto there = see(m, other);
   expect_equal(there, names);
   EXPECT_NEAR(std::abs(there.at("F0_dev")), std::abs(signed_before), 1e-12);  // its sign is the mode's
+}
+
+TEST(Observers, EachSaysWhatItReads) {
+  const State state = test::squeezed(Material{}, 150, 24, 0.75);
+  const auto together = see(Material{}, state);
+  for (const std::string& name : observe::names()) {
+    Observers one({name});
+    for (const auto& [column, value] : see(one, Material{}, state)) {
+      if (column == "D2_min") continue;  // has no row before
+      EXPECT_EQ(value, together.at(column)) << column;
+    }
+  }
+  EXPECT_EQ(Observers({}).reads(), Wanted{});
+  EXPECT_EQ(Observers({"contacts", "percolation"}).reads(), Wanted{});  // of the network alone
+  EXPECT_EQ(Observers({"energy"}).reads(), Wanted{.energies = true});
+  EXPECT_EQ(Observers({"kinetic_stress"}).reads(), Wanted{.kinetic_stress = true});
 }
 
 TEST(Observers, NoneCostsNoColumn) {

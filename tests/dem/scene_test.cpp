@@ -47,7 +47,8 @@ TEST(Scene, DefaultsAreThoseOfTheDocumentation) {
       json["preparation"].dump(),
       R"({"count":1000,"seed":1,"nu_gas":0.3,"speed":0.02,"nu":0.64,"rate":0.0002,"relax":{"tolerance":1e-06,"duration":2000.0}})");
   EXPECT_EQ(json["measure"].dump(),
-            R"({"rows":100,"snapshots":[],"moduli":[],"time_step":0.2,"time_step_gas":0.05,"observe":[]})");
+            R"({"rows":100,"snapshots":[],"moduli":[],"time_step":0.2,"time_step_gas":0.05,)"
+            R"("standard":["stress","fabric","coordination","energy_ratio"],"observe":[]})");
   EXPECT_EQ(json["path"]["segments"].size(), 1u);
 }
 
@@ -390,6 +391,24 @@ TEST(Scene, ObserversAreKeptInTheOrderOfTheirColumns) {
     EXPECT_EQ(error.key(), "measure.observe[1]");
     EXPECT_THAT(error.what(), testing::HasSubstr("did you mean percolation?"));
   }
+}
+
+TEST(Scene, GroupsOfColumnsAreKeptInTheOrderOfTheirColumns) {
+  const auto written = [](const std::string& names) {
+    return scene_of(with("measure", R"({"standard": )" + names + "}")).to_json()["measure"]["standard"];
+  };
+  EXPECT_EQ(written(R"(["energy_ratio", "stress"])"), Json::parse(R"(["stress", "energy_ratio"])"));
+  EXPECT_EQ(written("[]"), Json::array());
+  const auto refused = [](const std::string& names) {
+    return refusal(with("measure", R"({"standard": )" + names + "}"));
+  };
+  EXPECT_THAT(refused(R"(["fabric", "stres"])"),
+              testing::HasSubstr("measure.standard[1]: must be one of stress, fabric, coordination, "
+                                 "energy_ratio, got \"stres\"; did you mean stress?"));
+  EXPECT_THAT(refused(R"(["P"])"), testing::HasSubstr("measure.standard[0]: must be one of stress, fabric"));
+  EXPECT_THAT(refused(R"(["fabric", "stress", "fabric"])"),
+              testing::HasSubstr("measure.standard[2]: is given twice, got fabric"));
+  EXPECT_THAT(refused(R"("stress")"), testing::HasSubstr("measure.standard: must be a list of words"));
 }
 
 }  // namespace

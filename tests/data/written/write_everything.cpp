@@ -62,7 +62,7 @@ void write_examples(const fs::path& data, const fs::path& dir) {
   write(dir, "replay", "d2.json", refused_increment(parameters));
 }
 
-/// Two element tests with few grains, the second from a snapshot of the first.
+/// Element tests with few grains, the others from a snapshot of the first.
 void run_element_tests(const fs::path& dir) {
   const Json first = Json::parse(R"({
     "preparation": {"count": 64, "nu": 0.6, "relax": {"duration": 20}},
@@ -77,6 +77,8 @@ void run_element_tests(const fs::path& dir) {
     "measure": {"rows": 3}})");
   for (const auto& name : dem::observe::names()) second["measure"]["observe"].push_back(name);
   dem::run_element_test(dem::Scene::read(Reader(second, "second"), dir), dir / "second");
+  second["measure"] = {{"rows", 3}, {"standard", {"coordination"}}};
+  dem::run_element_test(dem::Scene::read(Reader(second, "third"), dir), dir / "third");
 }
 
 /// The documents that a table accepts.
