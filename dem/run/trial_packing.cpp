@@ -23,6 +23,8 @@ constexpr std::size_t whole_trial = 20'000, base_grains = 10'000;
 
 }  // namespace
 
+bool is_laid_out(std::size_t count) { return count > whole_trial; }
+
 State laid_out(const State& one, std::size_t times) {
   State state = one;
   state.position.clear();
@@ -70,6 +72,13 @@ void TrialPacking::settle() {
   options.most_passes = most_passes;
   minimise(packing, options);
   state_ = packing.state();
+}
+
+std::optional<LegCost> TrialPacking::run(const Stage& stage, double budget) {
+  Dynamics dynamics(material_, state_);
+  const std::optional<LegCost> cost = try_leg(dynamics, stage, budget);
+  state_ = dynamics.state();
+  return cost;
 }
 
 State TrialPacking::state() const { return times_ > 1 ? laid_out(state_, times_) : state_; }

@@ -2,14 +2,20 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
+#include "grainlaw/dem/drive/stage.hpp"
 #include "grainlaw/dem/packing/state.hpp"
+#include "grainlaw/dem/run/leg_trial.hpp"
 #include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/material.hpp"
 
 namespace grainlaw::dem {
 
 constexpr std::size_t largest_trial = 200'000;  ///< beyond, a grain costs the same
+
+/// Whether a trial packing of a scene of so many grains is made of copies of a smaller one.
+bool is_laid_out(std::size_t count);
 
 /// A packing in an orthorhombic box beside itself, `times` along each axis.
 State laid_out(const State& one, std::size_t times);
@@ -24,6 +30,8 @@ class TrialPacking {
   void shear();
   /// To rest, about where it is: what was done in haste has left more motion than there is in a slow flow.
   void settle();
+  /// Takes a stage as a run does, for `budget` processor seconds at most (see try_leg).
+  std::optional<LegCost> run(const Stage& stage, double budget);
 
   /// Without copies beside it.
   const State& base() const { return state_; }
