@@ -252,14 +252,16 @@ TrialPacking first_trial(const Scene& scene, const State& start) {
 }
 
 /// Fast compressions, and what flies with them, where a trial has fewer grains than the scene.
-void tell_fast_stages(const Scene& scene, const State& start, std::vector<StageCost>& stages) {
+void tell_fast_stages(const Scene& scene, const State& start, const CostOptions& options,
+                      std::vector<StageCost>& stages) {
   if (std::none_of(stages.begin(), stages.end(),
                    [](const auto& cost) { return compresses_fast(cost.stage); }))
     return;
   if (!is_laid_out(start.count())) return;
   const TrialPacking few = first_trial(scene, start);
   const double size = static_cast<double>(start.count()) / static_cast<double>(few.base().count());
-  const std::vector<std::optional<LegCost>> told = try_fast_stages(few, scene.material, stages);
+  const std::vector<std::optional<LegCost>> told =
+      try_fast_stages(few, scene.material, stages, options.trial_seconds.value_or(usual_fast_trial));
   for (std::size_t k = 0; k < stages.size(); ++k) note(told[k], size, stages[k]);
 }
 
@@ -342,7 +344,7 @@ struct Trials {
 Trials try_all(const Scene& scene, const State& start, const CostOptions& options,
                std::vector<StageCost>& stages) {
   Trials trials;
-  tell_fast_stages(scene, start, stages);
+  tell_fast_stages(scene, start, options, stages);
   for (const State& seen : run_from_beginning(scene, start, options, stages))
     trials.path.push_back(
         try_flow(scene, seen, seen, main_stage(stages, true).stage, start.count(), options));

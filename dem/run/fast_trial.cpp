@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/step/dynamics.hpp"
@@ -13,11 +14,11 @@ namespace {
 
 constexpr double fast_step = 1e-5;       // strain of a step
 constexpr double same_density = 1e-6;    // logarithmic
-constexpr double all_seconds = 2;        // of stages, run in few grains
 constexpr double many_seconds = 0.8;     // of steps in many
 constexpr double share_of_rest = 0.5;    // of the time left, that a relaxation may take
 constexpr double spread_of_time = 0.25;  // of seconds, logarithmic, where the steps are known
 constexpr double spread_of_end = 0.5;    // where they end as the grains come to rest
+constexpr double faster_of_many = 1.08;  // of a step: the fastest of many grains makes lists more often
 constexpr std::uint64_t flight_steps = 60;
 
 double strain_of_step(const Stage& stage) {
@@ -51,7 +52,7 @@ class ManyOverFew {
     many_ += seconds_in_flight(material, packing.state(), dt);
     spent_ += thread_seconds() - begin;
   }
-  double ratio() const { return few_ > 0 ? many_ / few_ : 1; }
+  double ratio() const { return few_ > 0 ? faster_of_many * many_ / few_ : 1; }
 
  private:
   double few_ = 0, many_ = 0, spent_ = 0;
@@ -60,7 +61,8 @@ class ManyOverFew {
 /// The stages one after the other.
 class FastTrial {
  public:
-  FastTrial(TrialPacking few, const Material& material) : few_(std::move(few)), material_(material) {}
+  FastTrial(TrialPacking few, const Material& material, double budget)
+      : few_(std::move(few)), material_(material), end_(thread_seconds() + budget) {}
 
   /// False where there is no going on.
   bool take(const StageCost& cost);
@@ -74,7 +76,7 @@ class FastTrial {
   TrialPacking few_;
   const Material& material_;
   bool fly_ = false;
-  double begin_ = thread_seconds();
+  double end_;
   ManyOverFew many_over_few_;
   std::optional<LegCost> told_;
 };
@@ -86,7 +88,7 @@ void FastTrial::run(const Stage& stage, double budget) {
 
 bool FastTrial::take(const StageCost& cost) {
   const Stage& stage = cost.stage;
-  const double left = all_seconds - (thread_seconds() - begin_);
+  const double left = end_ - thread_seconds();
   told_.reset();
   if (is_fast(stage)) {
     if (left > 0) run(stage, left);
@@ -118,9 +120,9 @@ bool compresses_fast(const Stage& stage) {
 }
 
 std::vector<std::optional<LegCost>> try_fast_stages(TrialPacking few, const Material& material,
-                                                    const std::vector<StageCost>& stages) {
+                                                    const std::vector<StageCost>& stages, double budget) {
   std::vector<std::optional<LegCost>> told(stages.size());
-  FastTrial trial(std::move(few), material);
+  FastTrial trial(std::move(few), material, budget);
   const auto more_to_come = [&](std::size_t k) {
     return std::any_of(stages.begin() + static_cast<std::ptrdiff_t>(k), stages.end(),
                        [](const StageCost& cost) { return compresses_fast(cost.stage); });

@@ -12,16 +12,21 @@
 
 namespace grainlaw::dem {
 
-/// Whether a stage changes the density by more than 1e-5 of strain a step, of known steps. From there on a
-/// trial of what was at rest tells too little: 0.85 of what a step takes at 2e-5, 0.6 at 5e-5.
+/// Whether a stage changes the density at more than 1e-5 of strain a step, in steps that are known in
+/// advance. From there on a trial of grains that were at rest tells too little: 0.8 of what it takes at 1e-5
+/// in jammed grains, 0.85 at 2e-5 in a gas, 0.6 at 5e-5 in both.
 bool compresses_fast(const Stage& stage);
 
-/// Runs the fast compressions among `stages`, and the relaxations and fast shear between and after them, in
-/// the grains of `few` before they are laid out beside themselves; stages between that are slow leave grains
-/// at rest at their density. `few` is at rest, or the gas that a run begins with. What one grain takes in so
-/// few is made what it takes in as many as few.state() has, by the time of equal steps of both. The range is
-/// what we saw it to be off. None of a stage that was not run, or not to its end; after a servo, none.
+/// How long such stages are run in all, unless one asks for more, in processor seconds.
+constexpr double usual_fast_trial = 2;
+
+/// Runs fast compressions, and the relaxations and fast shear between and after them, in the grains of `few`
+/// without their copies, until `budget` processor seconds are over; stages between that are slow leave grains
+/// at rest, at their density. `few` is the gas that a run begins with, or at rest. Told is what these grains
+/// take if each takes as long as among as many as few.state() has, by equal steps of both: for known steps
+/// within exp(0.25), mostly, for a relaxation that comes to its end early within exp(0.5). None of a stage
+/// that was not run to its end, and none after a servo.
 std::vector<std::optional<LegCost>> try_fast_stages(TrialPacking few, const Material& material,
-                                                    const std::vector<StageCost>& stages);
+                                                    const std::vector<StageCost>& stages, double budget);
 
 }  // namespace grainlaw::dem

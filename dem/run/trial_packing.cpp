@@ -31,15 +31,14 @@ State laid_out(const State& one, std::size_t times) {
   state.velocity.clear();
   state.radius.clear();
   state.box = static_cast<double>(times) * one.box;
-  const Vec3 edge = one.box.diagonal();
   for (std::size_t a = 0; a < times; ++a)
     for (std::size_t b = 0; b < times; ++b)
       for (std::size_t c = 0; c < times; ++c)
         for (std::size_t i = 0; i < one.count(); ++i) {
           const Vec3& x = one.position[i];
-          state.position.push_back({x[0] + static_cast<double>(a) * edge[0],
-                                    x[1] + static_cast<double>(b) * edge[1],
-                                    x[2] + static_cast<double>(c) * edge[2]});
+          const Vec3 edges{static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)},
+              beside = one.box * edges;
+          state.position.push_back({x[0] + beside[0], x[1] + beside[1], x[2] + beside[2]});
           state.velocity.push_back(one.velocity[i]);
           state.radius.push_back(one.radius[i]);
         }

@@ -17,7 +17,7 @@ constexpr std::size_t largest_trial = 200'000;  ///< beyond, a grain costs the s
 /// Whether a trial packing of a scene of so many grains is made of copies of a smaller one.
 bool is_laid_out(std::size_t count);
 
-/// A packing in an orthorhombic box beside itself, `times` along each axis.
+/// A packing beside itself, `times` along each edge of its box.
 State laid_out(const State& one, std::size_t times);
 
 /// A packing like the scene's, made much faster than a real one: only what its neighbourhoods cost matters.
