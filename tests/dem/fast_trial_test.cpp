@@ -89,7 +89,7 @@ TEST(FastTrial, TellsWhatFlies) {
 /// Then grains are as dense as there, and at rest: how soon they are again, to the step, tells.
 TEST(FastTrial, LeavesSlowStagesAlone) {
   const Scene scene = scene_of(R"("rate": 1e-4)", rest + R"(, {"mode": "iso", "controls": {"nu": 0.7},
-    "rate": 3e-4}, {"mode": "relax", "duration": 50, "tolerance": 0.5})");
+    "rate": 6e-4}, {"mode": "relax", "duration": 100, "tolerance": 0.01})");
   const auto told = tried(scene);
   ASSERT_EQ(told.size(), 5u);
   EXPECT_FALSE(told[0] || told[1] || told[2]);
@@ -100,7 +100,6 @@ TEST(FastTrial, LeavesSlowStagesAlone) {
   const std::vector<StageCost> stages = planned(scene);
   few.run(stages[3].stage, time_enough);
   const auto by_hand = few.run(stages[4].stage, time_enough);
-  EXPECT_LT(by_hand->passes, stages[4].passes);
   EXPECT_EQ(told[4]->passes, by_hand->passes);
 }
 
