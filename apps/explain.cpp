@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "grainlaw/apps/terminal.hpp"
-#include "grainlaw/dem/run/fast_trial.hpp"
 
 namespace grainlaw::apps {
 
@@ -90,17 +89,18 @@ bool may_wait(const dem::StageCost& cost) {
 /// Whether it may end before the time said.
 bool may_end_early(const dem::StageCost& cost) { return !cost.tried && !cost.stage.leg.drives(); }
 
-/// Whether its grains fly as they have since the beginning, which was not tried: it takes more, then.
-bool flies(const dem::StageCost& cost) { return !cost.tried && dem::compresses_fast(cost.stage); }
+/// Whether its grains fly as they have since an earlier stage, which was not tried: it takes more, then.
+bool flies(const dem::StageCost& cost) { return !cost.tried && cost.flies; }
 
 std::string stage_time(const dem::StageCost& cost) {
   if (may_wait(cost))
     return range_text(cost.seconds, cost.least, cost.most) + ", several times that if its servo has to wait";
   if (cost.tried) return range_text(cost.seconds, cost.least, cost.most);
+  if (flies(cost)) return short_time(cost.seconds) + " or more, for its grains fly";
   return (guessed(cost)         ? "not tried, perhaps "
           : may_end_early(cost) ? "at most "
                                 : "") +
-         short_time(cost.seconds) + (flies(cost) ? " or more, for its grains fly" : "");
+         short_time(cost.seconds);
 }
 
 /// Of all stages, rows and files.

@@ -113,7 +113,8 @@ State start_of(const Scene& scene) {
 std::vector<StageCost> planned(const Scene& scene, const State& start) {
   const auto* packing = std::get_if<NewPacking>(&scene.preparation);
   double nu = start.volume_fraction();
-  const LongestSteps longest(scene, *std::min_element(start.radius.begin(), start.radius.end()));
+  const double smallest = *std::min_element(start.radius.begin(), start.radius.end());
+  const LongestSteps longest(scene, smallest);
   const std::vector<Stage> stages = plan_stages(scene, packing != nullptr ? packing->nu : nu, longest);
   check_width(stages, start, scene);
   std::vector<StageCost> list;
@@ -123,6 +124,8 @@ std::vector<StageCost> planned(const Scene& scene, const State& start) {
     list.push_back({stage, {nu, after}, static_cast<double>(stage.passes())});
     nu = after;
   }
+  const std::vector<bool> fly = flying(list, scene.material.contact_duration(smallest));
+  for (std::size_t k = 0; k < list.size(); ++k) list[k].flies = fly[k];
   return list;
 }
 
@@ -254,9 +257,7 @@ TrialPacking first_trial(const Scene& scene, const State& start) {
 /// Fast compressions, and what flies with them, where a trial has fewer grains than the scene.
 void tell_fast_stages(const Scene& scene, const State& start, const CostOptions& options,
                       std::vector<StageCost>& stages) {
-  if (std::none_of(stages.begin(), stages.end(),
-                   [](const auto& cost) { return compresses_fast(cost.stage); }))
-    return;
+  if (std::none_of(stages.begin(), stages.end(), [](const StageCost& cost) { return cost.flies; })) return;
   if (!is_laid_out(start.count())) return;
   const TrialPacking few = first_trial(scene, start);
   const double size = static_cast<double>(start.count()) / static_cast<double>(few.base().count());

@@ -19,6 +19,7 @@ constexpr double share_of_rest = 0.5;    // of the time left, that a relaxation 
 constexpr double spread_of_time = 0.25;  // of seconds, logarithmic, where the steps are known
 constexpr double spread_of_end = 0.5;    // where they end as the grains come to rest
 constexpr double faster_of_many = 1.08;  // of a step: the fastest of many grains makes lists more often
+constexpr double cooling = 1000;         // contact durations, after which most of the motion is gone
 constexpr std::uint64_t flight_steps = 60;
 
 double strain_of_step(const Stage& stage) {
@@ -117,6 +118,19 @@ void widen(const Stage& stage, double ratio, LegCost& cost) {
 bool compresses_fast(const Stage& stage) {
   const StrainTensor& strain = stage.leg.strain;
   return is_fast(stage) && std::abs(strain[0] + strain[1] + strain[2]) > same_density;
+}
+
+std::vector<bool> flying(const std::vector<StageCost>& stages, double contact_duration) {
+  std::vector<bool> fly;
+  bool before = false;
+  for (const StageCost& cost : stages) {
+    const Stage& stage = cost.stage;
+    const bool goes_on =
+        is_fast(stage) || (relaxes(stage) && stage.leg.duration < cooling * contact_duration);
+    before = compresses_fast(stage) || (before && goes_on);
+    fly.push_back(before);
+  }
+  return fly;
 }
 
 std::vector<std::optional<LegCost>> try_fast_stages(TrialPacking few, const Material& material,

@@ -17,6 +17,11 @@ namespace grainlaw::dem {
 /// in jammed grains, 0.85 at 2e-5 in a gas, 0.6 at 5e-5 in both.
 bool compresses_fast(const Stage& stage);
 
+/// Of each stage, whether its grains fly as a fast compression has left them: such a compression, and fast
+/// shear and relaxations of less than a thousand contact durations (us) until grains are at rest. In longer
+/// ones most steps are done at rest.
+std::vector<bool> flying(const std::vector<StageCost>& stages, double contact_duration);
+
 /// How long such stages are run in all, unless one asks for more, in processor seconds.
 constexpr double usual_fast_trial = 2;
 

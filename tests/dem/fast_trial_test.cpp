@@ -71,6 +71,17 @@ TEST(FastTrial, OfWhatChangesTheDensityFast) {
   EXPECT_TRUE(compresses_fast(edge));
 }
 
+/// From a fast compression until grains are at rest: a slow stage, or a long relaxation.
+TEST(FastTrial, GrainsFlyUntilTheyRest) {
+  const std::string long_rest = R"({"mode": "relax", "duration": 300})";
+  const std::vector<StageCost> stages =
+      planned(scene_of(fast_gas, fast_d2 + ", " + rest + ", " + slow_iso + ", " + fast_d2 + ", " + rest +
+                                     ", " + fast_iso + ", " + long_rest + ", " + rest));
+  const std::vector<bool> expected{true, true, true, true, false, false, false, true, false, false};
+  EXPECT_EQ(flying(stages, 0.25), expected);
+  EXPECT_TRUE(flying(stages, 0.5)[8]);  // 600 contact durations
+}
+
 /// Every step of them is known, and the range is on either side.
 TEST(FastTrial, TellsWhatFlies) {
   const Scene scene = scene_of(fast_gas, rest + ", " + fast_iso + ", " + fast_d2 + ", " + slow_iso);
