@@ -91,10 +91,14 @@ bool may_wait(const dem::StageCost& cost) {
 /// Whether it may end before the time said.
 bool may_end_early(const dem::StageCost& cost) { return !cost.tried && !cost.stage.leg.drives(); }
 
+/// Whether its grains fly as they have since an earlier stage, which was not tried: it takes more, then.
+bool flies(const dem::StageCost& cost) { return !cost.tried && cost.flies; }
+
 std::string stage_time(const dem::StageCost& cost) {
   if (may_wait(cost))
     return range_text(cost.seconds, cost.least, cost.most) + ", several times that if its servo has to wait";
   if (cost.tried) return range_text(cost.seconds, cost.least, cost.most);
+  if (flies(cost)) return short_time(cost.seconds) + " or more, for its grains fly";
   return (guessed(cost)         ? "not tried, perhaps "
           : may_end_early(cost) ? "at most "
                                 : "") +
@@ -106,7 +110,8 @@ std::string whole_time(const SceneCost& cost) {
   const auto any = [&](bool (*is)(const dem::StageCost&)) {
     return std::any_of(cost.stages.begin(), cost.stages.end(), is);
   };
-  const std::string guess = any(guessed) ? "perhaps " : "", more = any(may_wait) ? " or more" : "";
+  const std::string guess = any(guessed) ? "perhaps " : "",
+                    more = any(may_wait) || any(flies) ? " or more" : "";
   const std::string least = short_time(cost.least()), most = short_time(cost.most());
   if (least == most) return guess + most + more;
   if (any(may_end_early)) return guess + least + " to " + most + more;

@@ -12,6 +12,7 @@
 #include "grainlaw/dem/numbers/random.hpp"
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/packing/size_distribution.hpp"
+#include "grainlaw/dem/run/fast_trial.hpp"
 #include "grainlaw/dem/run/leg_trial.hpp"
 #include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/run/trial.hpp"
@@ -112,7 +113,8 @@ State start_of(const Scene& scene) {
 std::vector<StageCost> planned(const Scene& scene, const State& start) {
   const auto* packing = std::get_if<NewPacking>(&scene.preparation);
   double nu = start.volume_fraction();
-  const LongestSteps longest(scene, *std::min_element(start.radius.begin(), start.radius.end()));
+  const double smallest = *std::min_element(start.radius.begin(), start.radius.end());
+  const LongestSteps longest(scene, smallest);
   const std::vector<Stage> stages = plan_stages(scene, packing != nullptr ? packing->nu : nu, longest);
   check_width(stages, start, scene);
   std::vector<StageCost> list;
@@ -122,6 +124,8 @@ std::vector<StageCost> planned(const Scene& scene, const State& start) {
     list.push_back({stage, {nu, after}, static_cast<double>(stage.passes())});
     nu = after;
   }
+  const std::vector<bool> fly = flying(list, scene.material.contact_duration(smallest));
+  for (std::size_t k = 0; k < list.size(); ++k) list[k].flies = fly[k];
   return list;
 }
 
@@ -206,13 +210,16 @@ State first_grains(const Scene& scene, const State& start) {
 
 /// Processor seconds that a stage may take in the grains that it begins with; 0 where it would take more, or
 /// where those before it have taken too long.
-double budget_of(const Stage& stage, std::size_t grains, double spent, const CostOptions& options) {
+double budget_of(const StageCost& cost, std::size_t grains, double spent, const CostOptions& options) {
   constexpr double whole_seconds = 3, all_seconds = 6;  // of a stage with planned steps; of all before it
   constexpr double fastest = 8e-9;                      // s, of a step of a grain, so far
+  const Stage& stage = cost.stage;
   if (!options.trial_seconds && spent > all_seconds) return 0;
   if (needs_trial(stage)) return options.trial_seconds.value_or(usual_trial(Likeness::all));
   const double budget = options.trial_seconds.value_or(whole_seconds);
-  return fastest * static_cast<double>(grains * stage.stepping.steps) < budget ? budget : 0;
+  const double expected =
+      cost.tried ? cost.seconds : fastest * static_cast<double>(grains * stage.stepping.steps);
+  return expected < budget ? budget : 0;
 }
 
 /// Of the places where a path comes by, the loosest and the densest.
@@ -237,6 +244,28 @@ class Extremes {
   std::vector<State> states_;
 };
 
+/// A packing like the scene's, as a run finds it: a gas, or at rest where it begins.
+TrialPacking first_trial(const Scene& scene, const State& start) {
+  if (const auto* own = std::get_if<NewPacking>(&scene.preparation))
+    return {scene.material, start.count(), *own};
+  TrialPacking packing(scene.material, start.count(), NewPacking{});
+  packing.compress_to(start.volume_fraction());
+  packing.settle();
+  return packing;
+}
+
+/// Fast compressions, and what flies with them, where a trial has fewer grains than the scene.
+void tell_fast_stages(const Scene& scene, const State& start, const CostOptions& options,
+                      std::vector<StageCost>& stages) {
+  if (std::none_of(stages.begin(), stages.end(), [](const StageCost& cost) { return cost.flies; })) return;
+  if (!is_laid_out(start.count())) return;
+  const TrialPacking few = first_trial(scene, start);
+  const double size = static_cast<double>(start.count()) / static_cast<double>(few.base().count());
+  const std::vector<std::optional<LegCost>> told =
+      try_fast_stages(few, scene.material, stages, options.trial_seconds.value_or(usual_fast_trial));
+  for (std::size_t k = 0; k < stages.size(); ++k) note(told[k], size, stages[k]);
+}
+
 /// Runs the stages from the first on as a run does, in one and the same grains, as long as each ends within
 /// its time; what is run is known to the step. If that is all of them, the loosest and the densest grains
 /// between which the path went. After a servo the stages are planned anew, which is not done here.
@@ -248,7 +277,7 @@ std::vector<State> run_from_beginning(const Scene& scene, const State& start, co
   const double begin = thread_seconds();
   for (std::size_t k = 0; k < stages.size(); ++k) {
     StageCost& cost = stages[k];
-    const double budget = budget_of(cost.stage, grains.count(), thread_seconds() - begin, options);
+    const double budget = budget_of(cost, grains.count(), thread_seconds() - begin, options);
     if (!(budget > 0)) return {};
     const bool begins_path = cost.stage.segment && (k == 0 || !stages[k - 1].stage.segment);
     if (begins_path && k > 0) grains.begin_anew(grains.state());  // as a run does
@@ -316,6 +345,7 @@ struct Trials {
 Trials try_all(const Scene& scene, const State& start, const CostOptions& options,
                std::vector<StageCost>& stages) {
   Trials trials;
+  tell_fast_stages(scene, start, options, stages);
   for (const State& seen : run_from_beginning(scene, start, options, stages))
     trials.path.push_back(
         try_flow(scene, seen, seen, main_stage(stages, true).stage, start.count(), options));

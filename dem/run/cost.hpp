@@ -14,7 +14,8 @@ struct CostOptions {
   int threads = 1;
   double checkpoint_every = 60;  ///< s
   /// Processor seconds for which each stage may be tried whose work is known only when the grains have run,
-  /// and which each stage on the way to it may take; if not said, usual_trial() and 3, and 6 in all.
+  /// and which each stage on the way to it may take; if not said, usual_trial() and 3, and 6 in all. Also for
+  /// which fast compressions may be run in fewer grains; if not said, usual_fast_trial.
   std::optional<double> trial_seconds = {};
 };
 

@@ -23,6 +23,7 @@ struct StageCost {
   double seconds = 0;          ///< without rows; of a relaxation, which may end early, the most
   double least = 0, most = 0;  ///< between which they mostly lie; `seconds` both, where no range is known
   bool tried = false;          ///< whether it was run, or a part of it (see try_leg)
+  bool flies = false;          ///< whether its grains do (see flying): if not tried, it takes more
   double bytes = 0;            ///< held beside the grains while it lasts
 };
 

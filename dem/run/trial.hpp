@@ -49,6 +49,8 @@ class Trial {
   /// much longer than most.
   void moduli(const State& flowing, const Stage& stage, std::size_t grains);
   const TrialCost& cost() const { return cost_; }
+  /// Where box and grains are now.
+  const Dynamics& dynamics() const { return dynamics_; }
 
  private:
   template <class Call, class Before>

@@ -23,21 +23,22 @@ constexpr std::size_t whole_trial = 20'000, base_grains = 10'000;
 
 }  // namespace
 
+bool is_laid_out(std::size_t count) { return count > whole_trial; }
+
 State laid_out(const State& one, std::size_t times) {
   State state = one;
   state.position.clear();
   state.velocity.clear();
   state.radius.clear();
   state.box = static_cast<double>(times) * one.box;
-  const Vec3 edge = one.box.diagonal();
   for (std::size_t a = 0; a < times; ++a)
     for (std::size_t b = 0; b < times; ++b)
       for (std::size_t c = 0; c < times; ++c)
         for (std::size_t i = 0; i < one.count(); ++i) {
           const Vec3& x = one.position[i];
-          state.position.push_back({x[0] + static_cast<double>(a) * edge[0],
-                                    x[1] + static_cast<double>(b) * edge[1],
-                                    x[2] + static_cast<double>(c) * edge[2]});
+          const Vec3 edges{static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)},
+              beside = one.box * edges;
+          state.position.push_back({x[0] + beside[0], x[1] + beside[1], x[2] + beside[2]});
           state.velocity.push_back(one.velocity[i]);
           state.radius.push_back(one.radius[i]);
         }
@@ -70,6 +71,13 @@ void TrialPacking::settle() {
   options.most_passes = most_passes;
   minimise(packing, options);
   state_ = packing.state();
+}
+
+std::optional<LegCost> TrialPacking::run(const Stage& stage, double budget) {
+  Dynamics dynamics(material_, state_);
+  const std::optional<LegCost> cost = try_leg(dynamics, stage, budget);
+  state_ = dynamics.state();
+  return cost;
 }
 
 State TrialPacking::state() const { return times_ > 1 ? laid_out(state_, times_) : state_; }

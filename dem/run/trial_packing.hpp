@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
+#include "grainlaw/dem/drive/stage.hpp"
 #include "grainlaw/dem/packing/state.hpp"
+#include "grainlaw/dem/run/leg_trial.hpp"
 #include "grainlaw/dem/scene/scene.hpp"
 #include "grainlaw/element/material.hpp"
 
@@ -11,7 +14,10 @@ namespace grainlaw::dem {
 
 constexpr std::size_t largest_trial = 200'000;  ///< beyond, a grain costs the same
 
-/// A packing in an orthorhombic box beside itself, `times` along each axis.
+/// Whether a trial packing of a scene of so many grains is made of copies of a smaller one.
+bool is_laid_out(std::size_t count);
+
+/// A packing beside itself, `times` along each edge of its box.
 State laid_out(const State& one, std::size_t times);
 
 /// A packing like the scene's, made much faster than a real one: only what its neighbourhoods cost matters.
@@ -24,6 +30,8 @@ class TrialPacking {
   void shear();
   /// To rest, about where it is: what was done in haste has left more motion than there is in a slow flow.
   void settle();
+  /// Takes a stage as a run does, for `budget` processor seconds at most (see try_leg).
+  std::optional<LegCost> run(const Stage& stage, double budget);
 
   /// Without copies beside it.
   const State& base() const { return state_; }

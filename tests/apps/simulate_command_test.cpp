@@ -57,6 +57,22 @@ TEST_F(Simulate, ExplainSaysWhatIsAGuess) {
   EXPECT_THAT(outcome.out, testing::ContainsRegex("in all: .*, perhaps "));
 }
 
+/// A compression so fast that its grains fly takes more than at rest; with time it is run.
+TEST_F(Simulate, ExplainSaysWhatFliesAndWasNotTried) {
+  write("s.json", R"({"preparation": {"count": 2000, "rate": 1e-2, "relax": {"duration": 5}},
+    "path": {"segments": [{"mode": "iso", "controls": {"nu": 0.7}, "rate": 1e-2},
+                          {"mode": "iso", "controls": {"nu": 0.72}, "rate": 5e-5}]}, "measure": {"rows": 2}})");
+  const Outcome brief = run({"simulate", "s.json", "--explain", "--explain-seconds", "0.01"});
+  ASSERT_EQ(brief.status, 0) << brief.err;
+  EXPECT_THAT(brief.out, testing::ContainsRegex("compress the gas .* or more, for its grains fly\n"));
+  EXPECT_THAT(brief.out, testing::ContainsRegex("relax the packing .* or more, for its grains fly\n"));
+  EXPECT_THAT(brief.out, testing::ContainsRegex("iso \\(1 of 2\\) .* or more, for its grains fly\n"));
+  EXPECT_THAT(brief.out, testing::ContainsRegex("iso \\(2 of 2\\) .* [0-9.]+ [mu]?s\n"));  // slow
+  EXPECT_THAT(brief.out, testing::ContainsRegex("in all: .* or more of one core"));
+  const Outcome whole = run({"simulate", "s.json", "--explain", "--explain-seconds", "1000"});
+  EXPECT_THAT(whole.out, testing::Not(HasSubstr("or more")));
+}
+
 TEST_F(Simulate, KeepsTheRowsOfAMotionThatCannotGoOn) {
   // Boxes that grains cross in every step: sooner or later two of them meet at one point.
   write("s.json", R"({"preparation": {"count": 64, "nu": 0.7, "rate": 2e-3},

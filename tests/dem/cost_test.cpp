@@ -15,6 +15,7 @@
 #include "grainlaw/dem/observe/observers.hpp"
 #include "grainlaw/dem/run/element_test.hpp"
 #include "grainlaw/dem/run/measured_cost.hpp"
+#include "grainlaw/dem/run/trial_packing.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/record.hpp"
 
@@ -223,6 +224,70 @@ TEST(Cost, RangesAddUp) {
   EXPECT_NEAR(cost.seconds() - cost.least(), cost.stages[1].seconds + 0.5 * cost.stages[2].seconds,
               1e-9 * cost.seconds());
   EXPECT_NEAR(cost.most() - cost.seconds(), 2 * cost.stages[2].seconds, 1e-9 * cost.seconds());
+}
+
+/// Grains of the last row are held all the time, one quad each, and are no part of what a row takes beside;
+/// what only looks keeps nothing.
+TEST(Cost, WhatAnObserverKeepsIsHeldAllTheTime) {
+  const SceneCost cost =
+      cost_of(scene_of(R"({"preparation": {"count": 300, "nu": 0.7}, "path": {"segments": [{"mode": "d2",
+    "amount": 0.001}]}, "measure": {"rows": 2, "observe": ["unbalanced", "nonaffine"]}})"),
+              {1, 60, 1e-6});
+  ASSERT_EQ(cost.observers.size(), 2u);
+  const auto& [unbalanced, nonaffine] = std::tie(cost.observers[0], cost.observers[1]);
+  EXPECT_EQ(unbalanced.kept_bytes, 0);
+  EXPECT_GT(unbalanced.bytes, 0);
+  EXPECT_EQ(nonaffine.kept_bytes, 300 * sizeof(Quad));
+  EXPECT_GT(nonaffine.bytes, 2 * nonaffine.kept_bytes);
+  SceneCost known = cost;  // whatever the allocator tells
+  known.fields = {{"held", 1000}, {"for a moment", 1, true}};
+  EXPECT_EQ(known.bytes(), 300 * 1000 + nonaffine.bytes + unbalanced.network_bytes);
+  known.fields[1].bytes_per_grain = 10000;  // more than a row takes beside what is kept
+  EXPECT_EQ(known.bytes(), 300 * (1000 + 10000) + nonaffine.kept_bytes);
+}
+
+constexpr double eighth = 20001.0 / 2500;  // of the grains, of which a trial makes copies
+
+/// Segments tried in an eighth of the grains: seconds and their range are those of all.
+TEST(Cost, RangesGrowWithTheGrains) {
+  const SceneCost cost = cost_of(scene_of(R"({"preparation": {"count": 20001, "nu": 0.7, "rate": 2e-3},
+    "path": {"segments": [{"mode": "constant_p", "amount": 0.05, "rate": 1e-3},
+                          {"mode": "relax", "residual": 1e-2}]}, "measure": {"rows": 2}})"),
+                                 {1, 60, 0.1});
+  const StageCost &servo = cost.stages[2], &minimiser = cost.stages[3];
+  for (const StageCost& stage : {servo, minimiser}) {
+    ASSERT_TRUE(stage.tried) << stage.stage.name;
+    EXPECT_NEAR(stage.most / stage.seconds, stage.seconds / stage.least, 1e-9) << stage.stage.name;
+    EXPECT_GT(stage.most / stage.seconds, std::exp(0.6) - 1e-9);  // of grains that are only as dense
+  }
+  const double flow = servo.passes * (cost.force_seconds + cost.motion_seconds);
+  EXPECT_GT(servo.seconds, 0.35 * flow);  // in an eighth of the grains it is less
+  EXPECT_LT(servo.seconds, 0.35 * eighth * flow);
+}
+
+/// A compression that would take longer than it may is told by fewer grains, which take an eighth of that.
+TEST(Cost, AFastCompressionOfManyIsToldByFewer) {
+  const Scene scene = scene_of(R"({"preparation": {"count": 20001, "rate": 0.1,
+      "relax": {"tolerance": 1e-300, "duration": 0.1}},
+    "path": {"segments": [{"mode": "d2", "amount": 0.001, "rate": 1e-4}]}, "measure": {"rows": 2}})");
+  TrialPacking few(scene.material, 20001, std::get<NewPacking>(scene.preparation));
+  const SceneCost untried = cost_of(scene, {1, 60, 1e-6});
+  EXPECT_FALSE(untried.stages[0].tried);
+  const std::optional<LegCost> fewer = few.run(untried.stages[0].stage, 1000);
+  ASSERT_TRUE(fewer);
+  bool told = false;  // that may take as long as so many times the fewer do
+  for (const double times : {3, 4, 2, 6}) {
+    const SceneCost cost = cost_of(scene, {1, 60, times * fewer->seconds});
+    const StageCost& gas = cost.stages[0];
+    EXPECT_EQ(gas.passes, untried.stages[0].passes);
+    told = gas.tried && gas.most > gas.least;
+    if (!told) continue;
+    EXPECT_GT(gas.seconds, 0.35 * eighth * fewer->seconds);
+    EXPECT_LT(gas.least, gas.seconds);
+    EXPECT_LT(gas.seconds, gas.most);
+    break;
+  }
+  EXPECT_TRUE(told);
 }
 
 TEST(Cost, RefusesWhatARunRefuses) {
