@@ -101,12 +101,8 @@ State start_of(const Scene& scene) {
   }
   const auto& packing = std::get<NewPacking>(scene.preparation);
   Random random(packing.seed);
-  State state;
-  state.radius = draw_radii(scene.material, static_cast<std::size_t>(packing.count), random);
-  state.box = Mat3::identity();
-  const double edge = std::cbrt(state.volume_fraction() / packing.nu_gas);
-  state.box = Mat3::diagonal({edge, edge, edge});
-  return state;
+  return without_places(draw_radii(scene.material, static_cast<std::size_t>(packing.count), random),
+                        packing.nu_gas);
 }
 
 /// The stages as they are planned, not yet with their times.
