@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +18,7 @@
 #include "grainlaw/apps/locations.hpp"
 #include "grainlaw/apps/report/gnuplot.hpp"
 #include "grainlaw/apps/terminal.hpp"
+#include "grainlaw/calibrate/bench_advice.hpp"
 #include "grainlaw/calibrate/bench_errors.hpp"
 #include "grainlaw/calibrate/lock_file.hpp"
 #include "grainlaw/calibrate/run_campaign.hpp"
@@ -141,54 +140,6 @@ calibrate::RunTest timed_test(const calibrate::Bench& bench) {
   };
 }
 
-std::string value_text(calibrate::Knob knob, double value) {
-  switch (knob) {
-    case calibrate::Knob::time_step:
-    case calibrate::Knob::gas_step:
-      return fmt::format("t_c/{}", value);
-    case calibrate::Knob::rate:
-    case calibrate::Knob::method:
-      return fmt::format("x {}", value);
-    case calibrate::Knob::count:
-      return fmt::format("{}", value);
-  }
-  return "";
-}
-
-/// Knobs by wanted errors: the cheapest value, and what it costs. Empty where none can be named.
-std::string cheapest(const std::vector<calibrate::BenchError>& errors, calibrate::Judge judge) {
-  const auto line = [](const std::string& name, const std::vector<std::string>& cells) {
-    std::string text = fmt::format("\n  {:12}", name);
-    for (const std::string& cell : cells) text += fmt::format("  {:>14}", cell);
-    return text;
-  };
-  std::vector<std::string> head;
-  std::map<calibrate::Knob, std::vector<std::string>> rows;
-  for (std::size_t k = 0; k < calibrate::wanted_errors.size(); ++k) {
-    head.push_back(fmt::format("{} %", 100 * calibrate::wanted_errors[k]));
-    for (const auto& best : recommend(errors, judge, calibrate::wanted_errors[k])) {
-      std::string cell = value_text(best.knob, best.value);
-      if (std::isfinite(best.core_s)) cell += fmt::format(", {:.2g} s", best.core_s);
-      rows[best.knob].resize(calibrate::wanted_errors.size(), "none");
-      rows[best.knob][k] = cell;
-    }
-  }
-  std::string text;
-  for (const auto& [knob, cells] : rows) text += line(name_of(knob), cells);
-  return text.empty() ? text : line("wanted error", head) + text;
-}
-
-/// What to take: for one test, and for means over many.
-std::string advice(const std::vector<calibrate::BenchError>& errors) {
-  std::string text;
-  if (const std::string one = cheapest(errors, calibrate::Judge::one_packing); !one.empty())
-    text = "cheapest settings for one test (errors count where they are larger than packings differ):" + one +
-           "\n";
-  return text +
-         "cheapest settings for means over many tests (errors count where chance does not explain them):" +
-         cheapest(errors, calibrate::Judge::chance);
-}
-
 /// The numbers and pictures of what is on disk.
 std::vector<calibrate::BenchError> write_result(const calibrate::Bench& bench, const fs::path& dir) {
   const auto errors = calibrate::bench_errors(bench, calibrate::RunFolder{dir});
@@ -199,7 +150,7 @@ std::vector<calibrate::BenchError> write_result(const calibrate::Bench& bench, c
   write_file(dir / "speed-against-error.csv", to_csv(errors));
   write_file(dir / "speed-against-error.svg", bench_picture(bench, errors, BenchCost::core_seconds));
   write_file(dir / "steps-against-error.svg", bench_picture(bench, errors, BenchCost::particle_steps));
-  write_file(dir / "report.html", bench_page(bench, errors, advice(errors)));
+  write_file(dir / "report.html", bench_page(bench, errors, calibrate::bench_advice(errors)));
   return errors;
 }
 
@@ -228,7 +179,7 @@ int run(const Arguments& arguments) {
                               result.reused + result.finished));
     return interrupted;
   }
-  talk.say(advice(errors));
+  talk.say(calibrate::bench_advice(errors));
   talk.say("report: " + (dir / "report.html").string());
   return result.failed.empty() ? all_well : failed;
 }

@@ -144,11 +144,11 @@ int run(const Arguments& arguments) {
   arguments.run.checkpoint_every();
   worker_count(arguments);  // what would end the run is said before it begins, not after the simulation
   const auto campaign = calibrate::Campaign::load(campaign_file(arguments));
-  check_boxes(campaign);
   find_thesis(campaign.material.w);
   report::run_gnuplot("");
   const fs::path dir =
       arguments.output.empty() ? fs::path("out") / campaign.name : fs::path(arguments.output);
+  if (!fs::exists(dir)) check_boxes(campaign);  // what was begun goes on, but for that test
   return Calibration(arguments, campaign, dir).run();
 }
 

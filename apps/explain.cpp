@@ -89,20 +89,22 @@ bool may_wait(const dem::StageCost& cost) {
 }
 
 /// Whether it may end before the time said.
-bool may_end_early(const dem::StageCost& cost) { return !cost.tried && !cost.stage.leg.drives(); }
+bool may_end_early(const dem::StageCost& cost) {
+  return !cost.tried && !cost.stage.leg.drives() && cost.least == 0;
+}
 
-/// Whether its grains fly as they have since an earlier stage, which was not tried: it takes more, then.
-bool flies(const dem::StageCost& cost) { return !cost.tried && cost.flies; }
+/// Whether it takes more, because grains still move that were at rest in the trial.
+bool still_moves(const dem::StageCost& cost) { return cost.still_moves; }
 
 std::string stage_time(const dem::StageCost& cost) {
   if (may_wait(cost))
     return range_text(cost.seconds, cost.least, cost.most) + ", several times that if its servo has to wait";
-  if (cost.tried) return range_text(cost.seconds, cost.least, cost.most);
-  if (flies(cost)) return short_time(cost.seconds) + " or more, for its grains fly";
-  return (guessed(cost)         ? "not tried, perhaps "
-          : may_end_early(cost) ? "at most "
-                                : "") +
-         short_time(cost.seconds);
+  const std::string time =
+      cost.tried ? range_text(cost.seconds, cost.least, cost.most) : short_time(cost.seconds);
+  if (still_moves(cost))
+    return (may_end_early(cost) ? "perhaps " + time : time + " or more") + ", for its grains still move";
+  if (cost.tried) return time;
+  return (guessed(cost) ? "not tried, perhaps " : may_end_early(cost) ? "at most " : "") + time;
 }
 
 /// Of all stages, rows and files.
@@ -111,9 +113,11 @@ std::string whole_time(const SceneCost& cost) {
     return std::any_of(cost.stages.begin(), cost.stages.end(), is);
   };
   const std::string guess = any(guessed) ? "perhaps " : "",
-                    more = any(may_wait) || any(flies) ? " or more" : "";
+                    more = any(may_wait) || any(still_moves) ? " or more" : "";
   const std::string least = short_time(cost.least()), most = short_time(cost.most());
   if (least == most) return guess + most + more;
+  if (cost.most() - cost.least() < 0.1 * cost.seconds())
+    return guess + "about " + short_time(cost.seconds()) + more;
   if (any(may_end_early)) return guess + least + " to " + most + more;
   return guess + range_text(cost.seconds(), cost.least(), cost.most()) + more;
 }
@@ -138,10 +142,19 @@ std::string groups_text(const std::vector<std::string>& asked) {
   std::vector<std::string> left_out;
   for (const std::string& group : column_groups())
     if (std::find(asked.begin(), asked.end(), group) == asked.end()) left_out.push_back(group);
-  const std::string on =
-      asked.empty() ? "none but segment, strains, nu and t" : fmt::format("{}", fmt::join(asked, ", "));
+  const std::string on = asked.empty() ? "none but segment, strains, nu, phi_J and t"
+                                       : fmt::format("{}", fmt::join(asked, ", "));
   if (left_out.empty()) return fmt::format("    {}\n", on);
   return fmt::format("    {}; measure.standard leaves out {}\n", on, fmt::join(left_out, ", "));
+}
+
+/// Whether a run can say that its grains were not at rest (see dem/record/row_writer.hpp).
+bool watches_energies(const dem::Measure& measure) {
+  const auto has = [](const std::vector<std::string>& list, const char* word) {
+    return std::find(list.begin(), list.end(), word) != list.end();
+  };
+  return has(measure.standard, "stress") &&
+         (has(measure.standard, "energy_ratio") || has(measure.observe, "energy"));
 }
 
 std::string rows(const dem::Measure& measure, const SceneCost& cost) {
@@ -155,6 +168,7 @@ std::string rows(const dem::Measure& measure, const SceneCost& cost) {
   };
   std::string text = fmt::format("measured in {} rows         per row     per step   memory\n", cost.rows);
   text += line("standard columns", cost.row_seconds, 0) + groups_text(measure.standard);
+  if (!watches_energies(measure)) text += "    so E_k/E_p is not watched\n";
   for (const auto& observer : cost.observers)
     text += line(observer.name, observer.seconds_per_row, observer.bytes);
   if (cost.observers.empty()) text += "  nothing else: measure.observe is empty\n";

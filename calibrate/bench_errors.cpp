@@ -219,6 +219,7 @@ std::vector<Recommendation> recommend(const std::vector<BenchError>& errors, Jud
     double particle_steps = 0;
     std::map<BenchTest, double> core_s;
     bool good = true;
+    const BenchError* worst = nullptr;  // of errors above the wanted one
   };
   std::map<Knob, std::map<double, Candidate>> knobs;
   for (const BenchError& line : errors) {
@@ -226,6 +227,9 @@ std::vector<Recommendation> recommend(const std::vector<BenchError>& errors, Jud
     candidate.particle_steps += line.particle_steps;
     candidate.core_s[line.test] = line.core_s;
     candidate.good = candidate.good && good_enough(line, judge, wanted);
+    const bool above = !line.finest && line.comparison.error > wanted;
+    if (above && (candidate.worst == nullptr || line.comparison.error > candidate.worst->comparison.error))
+      candidate.worst = &line;
   }
   std::vector<Recommendation> list;
   for (const auto& [knob, candidates] : knobs) {
@@ -238,7 +242,16 @@ std::vector<Recommendation> recommend(const std::vector<BenchError>& errors, Jud
     if (best == candidates.end()) continue;
     double core_s = 0;
     for (const auto& [test, seconds] : best->second.core_s) core_s += seconds;
-    list.push_back({knob, best->first, core_s});
+    Recommendation found{};
+    found.knob = knob;
+    found.value = best->first;
+    found.core_s = core_s;
+    if (const BenchError* worst = best->second.worst) {
+      found.excused = worst->comparison.error;
+      found.test = worst->test;
+      found.quantity = worst->quantity;
+    }
+    list.push_back(found);
   }
   return list;
 }

@@ -59,7 +59,10 @@ enum class Judge { chance, one_packing };
 struct Recommendation {
   Knob knob;
   double value;
-  double core_s;  ///< NaN where a run did not say
+  double core_s;         ///< NaN where a run did not say
+  double excused;        ///< the largest error that is above the wanted one, but within what the judge grants
+  BenchTest test;        ///< of which that is,
+  std::string quantity;  ///< and of what; empty where none is above
 };
 /// Of each knob the cheapest value whose errors are all below `wanted` (a share: 0.0025), or within what the
 /// judge grants. Of the method there is none; of the number of grains only by chance, as fewer scatter more.
@@ -67,9 +70,6 @@ std::vector<Recommendation> recommend(const std::vector<BenchError>& errors, Jud
 
 /// Errors that somebody may want.
 inline constexpr std::array<double, 4> wanted_errors{0.001, 0.0025, 0.005, 0.01};
-/// The one that a scene's defaults are chosen for: by so much of C* the fits of one packing of 1000 grains
-/// miss its rows (0.013 to 0.020 of 8).
-inline constexpr double default_error = wanted_errors[1];
 
 /// The file in a record's directory that says what the run cost.
 inline constexpr const char* core_time_file = "core_time.json";

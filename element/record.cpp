@@ -88,11 +88,11 @@ void check_separator(std::string_view header, const std::string& file) {
 
 Error missing(const std::string& file, const std::string& column) {
   const std::string group = group_of_column(column);
-  return {
-      file, column,
-      "column is missing" +
-          (group.empty() ? ""
-                         : "; a test writes it where measure.standard of its scene has \"" + group + "\"")};
+  return {file, column,
+          "column is missing" +
+              (group.empty() ? ""
+                             : "; a record of simulate has it where measure.standard of its scene names \"" +
+                                   group + "\"")};
 }
 
 void check_header(const Record& record, const std::string& file, const std::vector<std::string>& required) {

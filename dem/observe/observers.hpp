@@ -66,6 +66,8 @@ class Observers {
   const std::vector<std::string>& columns() const { return columns_; }
   /// What observe() must be told of beside nu.
   const Wanted& reads() const { return reads_; }
+  /// Whether any looks at velocities: contact forces depend on them.
+  bool sees_velocity() const { return walks_contacts_; }
   /// Values of columns() for row `row` of the record; tables are filled too.
   std::vector<double> observe(const Dynamics& dynamics, const Quads& velocity, const Measurement& measured,
                               const Material& material, const SignConvention& sign, std::size_t segment,

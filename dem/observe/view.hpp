@@ -40,7 +40,8 @@ struct Network {
 struct View {
   const Material& material;
   const Dynamics& dynamics;
-  const Quads& velocity;        ///< fluctuation velocity, in the order of the grains
+  const Quads& velocity;        ///< fluctuation velocity, in the order of the grains; empty where no contact
+                                ///< is walked and none of what is measured needs it
   const Measurement& measured;  ///< nu, and what the observers read
   const SignConvention& sign;
   std::size_t segment;

@@ -18,6 +18,9 @@ constexpr double quasi_static = 1e-3;  // E_k/E_p of the thesis's data stays bel
 constexpr double bearing_pressure =
     1e-3;  // P* from which the grains bear load, be it at rest or by their motion
 
+constexpr auto not_watched =
+    "E_k/E_p was not watched: that needs \"stress\" and \"energy_ratio\" in measure.standard";
+
 /// The standard values of one row, by column name.
 class Row {
  public:
@@ -74,12 +77,13 @@ double RowWriter::pressure(const Measurement& m) const {
 }
 
 void RowWriter::append(const Dynamics& dynamics, std::size_t segment, double eps_dev, double time) {
-  const Quads velocity = dynamics.velocities();
   const Grains& grains = dynamics.grains();
+  const Quads velocity =
+      wanted_.of_velocity() || observers_.sees_velocity() ? dynamics.velocities() : Quads{};
   const Measurement m =
       measure(dynamics.law(), grains, velocity, dynamics.cell(), dynamics.neighbours().pairs(), wanted_);
   const bool stable = wanted_.energies ? std::isfinite(m.kinetic) && std::isfinite(m.elastic)
-                                       : std::isfinite(kinetic_energy(grains, velocity));
+                                       : std::isfinite(kinetic_energy(grains, grains.motion));
   if (!stable)
     throw Error("the motion of the grains became unstable at nu = " + to_text(m.nu) +
                 ", t = " + to_text(time) + " us; take a smaller measure.time_step or rate");
@@ -118,8 +122,10 @@ std::vector<double> RowWriter::standard_values(const Measurement& m, std::size_t
   return row.take();
 }
 
+bool RowWriter::watches() const { return wanted_.stress && wanted_.energies; }
+
 void RowWriter::watch(const Measurement& m) {
-  if (!standard_.stress || !standard_.energies) return;
+  if (!watches()) return;
   if (pressure(m) < bearing_pressure || !(m.elastic > 0)) return;
   const double ratio = m.kinetic / m.elastic;
   ++bearing_;
@@ -133,6 +139,7 @@ void RowWriter::watch(const Measurement& m) {
 
 std::vector<std::string> RowWriter::warnings() const {
   std::vector<std::string> list;
+  if (!watches()) list.emplace_back(not_watched);
   const std::string rows = " of " + std::to_string(bearing_) + " load-bearing rows";
   if (violent_ > 0)
     list.push_back("E_k/E_p is above 1 in " + std::to_string(violent_) + rows +

@@ -37,9 +37,10 @@ class RowWriter {
   const std::vector<observe::Table>& tables() const { return observers_.tables(); }
 
   /// Sentences on E_k/E_p above 1e-3 and above 1 among the rows that bear load (P over k* at least 1e-3;
-  /// below jamming the ratio says nothing). None where the columns of the stress or of the ratio are not
-  /// asked for.
+  /// below jamming the ratio says nothing); or that nobody watched.
   std::vector<std::string> warnings() const;
+  /// Whether stress and energies are measured, by which the ratio is watched.
+  bool watches() const;
 
   template <class Self, class Archive>
   static void keep(Self& self, Archive& archive) {

@@ -120,8 +120,8 @@ std::vector<StageCost> planned(const Scene& scene, const State& start) {
     list.push_back({stage, {nu, after}, static_cast<double>(stage.passes())});
     nu = after;
   }
-  const std::vector<bool> fly = flying(list, scene.material.contact_duration(smallest));
-  for (std::size_t k = 0; k < list.size(); ++k) list[k].flies = fly[k];
+  const std::vector<bool> moves = still_moving(list, time_to_rest(scene.material));
+  for (std::size_t k = 0; k < list.size(); ++k) list[k].still_moves = moves[k];
   return list;
 }
 
@@ -204,15 +204,29 @@ State first_grains(const Scene& scene, const State& start) {
   return packing != nullptr ? random_gas(scene.material, *packing) : start;
 }
 
+constexpr double fastest = 8e-9;  // s, of a step of a grain, so far
+
+/// Of all stages, s.
+double shortest_time(const std::vector<StageCost>& stages, std::size_t grains) {
+  double steps = 0;
+  for (const StageCost& cost : stages) steps += static_cast<double>(cost.stage.passes());
+  return fastest * steps * static_cast<double>(grains);
+}
+
+/// Processor seconds that a stage with planned steps may be run for.
+double budget_of_planned(const CostOptions& options) {
+  constexpr double usual = 3;
+  return options.trial_seconds.value_or(usual);
+}
+
 /// Processor seconds that a stage may take in the grains that it begins with; 0 where it would take more, or
 /// where those before it have taken too long.
 double budget_of(const StageCost& cost, std::size_t grains, double spent, const CostOptions& options) {
-  constexpr double whole_seconds = 3, all_seconds = 6;  // of a stage with planned steps; of all before it
-  constexpr double fastest = 8e-9;                      // s, of a step of a grain, so far
+  constexpr double all_seconds = 6;  // of all before it
   const Stage& stage = cost.stage;
   if (!options.trial_seconds && spent > all_seconds) return 0;
   if (needs_trial(stage)) return options.trial_seconds.value_or(usual_trial(Likeness::all));
-  const double budget = options.trial_seconds.value_or(whole_seconds);
+  const double budget = budget_of_planned(options);
   const double expected =
       cost.tried ? cost.seconds : fastest * static_cast<double>(grains * stage.stepping.steps);
   return expected < budget ? budget : 0;
@@ -250,16 +264,24 @@ TrialPacking first_trial(const Scene& scene, const State& start) {
   return packing;
 }
 
-/// Fast compressions, and what flies with them, where a trial has fewer grains than the scene.
+constexpr double soon_run = 0.1;  // of a stage's time: a scene so short at its fastest is rather run
+
+/// Fast compressions, and what their grains do after them, where a trial has fewer grains than the scene.
 void tell_fast_stages(const Scene& scene, const State& start, const CostOptions& options,
                       std::vector<StageCost>& stages) {
-  if (std::none_of(stages.begin(), stages.end(), [](const StageCost& cost) { return cost.flies; })) return;
-  if (!is_laid_out(start.count())) return;
+  if (std::none_of(stages.begin(), stages.end(), [](const StageCost& cost) { return cost.still_moves; }))
+    return;
+  if (!is_laid_out(start.count()) ||
+      shortest_time(stages, start.count()) < soon_run * budget_of_planned(options))
+    return;
   const TrialPacking few = first_trial(scene, start);
   const double size = static_cast<double>(start.count()) / static_cast<double>(few.base().count());
   const std::vector<std::optional<LegCost>> told =
       try_fast_stages(few, scene.material, stages, options.trial_seconds.value_or(usual_fast_trial));
-  for (std::size_t k = 0; k < stages.size(); ++k) note(told[k], size, stages[k]);
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    note(told[k], size, stages[k]);
+    stages[k].still_moves = stages[k].still_moves && !told[k];
+  }
 }
 
 /// Runs the stages from the first on as a run does, in one and the same grains, as long as each ends within
@@ -278,8 +300,14 @@ std::vector<State> run_from_beginning(const Scene& scene, const State& start, co
     const bool begins_path = cost.stage.segment && (k == 0 || !stages[k - 1].stage.segment);
     if (begins_path && k > 0) grains.begin_anew(grains.state());  // as a run does
     if (begins_path) seen.see(grains.state());
+    const double before = thread_seconds();
     const std::optional<LegCost> tried = try_leg(grains, cost.stage, budget);
-    if (needs_trial(cost.stage) || (tried && tried->ended)) note(tried, 1, cost);
+    const bool tells = tried && (needs_trial(cost.stage) || tried->ended);
+    if (tells)
+      note(tried, 1, cost);
+    else
+      cost.ran = thread_seconds() - before;
+    cost.still_moves = cost.still_moves && !tells;
     if (!tried || !tried->ended) return {};
     if (cost.stage.leg.control.by_stress() && k + 1 < stages.size()) return {};
     if (cost.stage.segment) seen.see(grains.state());
@@ -388,11 +416,23 @@ double planned_seconds(const Trials& trials, const StageCost& stage, const Scene
   return stage.passes * static_cast<double>(cost.grains) * mean_step(near, stage);
 }
 
+/// What has run for a time, and did not end, takes no less.
+void heed_what_ran(StageCost& cost) {
+  constexpr double clearly = 0.8;
+  if (!(cost.seconds < clearly * cost.ran)) return;
+  cost.seconds = cost.ran;
+  cost.least = std::max(cost.least, cost.ran);
+  cost.most = std::max(cost.most, cost.ran);
+  cost.still_moves = true;
+}
+
 void take_stages(const Trials& trials, std::vector<StageCost> stages, SceneCost& cost) {
   for (StageCost& stage : stages) {
-    if (stage.tried) continue;
-    stage.seconds = stage.most = planned_seconds(trials, stage, cost);
-    stage.least = stage.stage.leg.drives() ? stage.seconds : 0;
+    if (!stage.tried) {
+      stage.seconds = stage.most = planned_seconds(trials, stage, cost);
+      stage.least = stage.stage.leg.drives() ? stage.seconds : 0;
+    }
+    heed_what_ran(stage);
   }
   cost.stages = std::move(stages);
 }

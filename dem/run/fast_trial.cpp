@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "grainlaw/dem/packing/state.hpp"
 #include "grainlaw/dem/run/measured_cost.hpp"
+#include "grainlaw/dem/run/trial.hpp"
 #include "grainlaw/dem/step/dynamics.hpp"
 #include "grainlaw/element/tensor.hpp"
 
@@ -12,22 +15,20 @@ namespace grainlaw::dem {
 
 namespace {
 
-constexpr double fast_step = 1e-5;       // strain of a step
-constexpr double same_density = 1e-6;    // logarithmic
-constexpr double many_seconds = 0.8;     // of steps in many
-constexpr double share_of_rest = 0.5;    // of the time left, that a relaxation may take
-constexpr double spread_of_time = 0.25;  // of seconds, logarithmic, where the steps are known
-constexpr double spread_of_end = 0.5;    // where they end as the grains come to rest
-constexpr double faster_of_many = 1.08;  // of a step: the fastest of many grains makes lists more often
-constexpr double cooling = 1000;         // contact durations, after which most of the motion is gone
+constexpr double fast_compression = 1e-5;  // strain of a step
+constexpr double same_volume = 1e-6;       // logarithmic
+constexpr double many_seconds = 0.8;       // of steps in many
+constexpr double share_of_rest = 0.5;      // of the time left, that a relaxation may take
+constexpr double spread_of_time = 0.25;    // of seconds, logarithmic, where the steps are known
+constexpr double spread_of_end = 0.5;      // where they end as the grains come to rest
+constexpr double faster_of_many = 1.08;    // of a step: the fastest of many grains makes lists more often
+constexpr double relaxation_times = 7;     // after which most of the motion is gone
 constexpr std::uint64_t flight_steps = 60;
 
-double strain_of_step(const Stage& stage) {
-  const double strain = std::max(std::abs(stage.leg.gamma.value_or(0)), largest_component(stage.leg.strain));
-  return strain / static_cast<double>(stage.stepping.steps);
+bool is_fast(const Stage& stage) {
+  return !needs_trial(stage) &&
+         largest_strain(stage.leg) / static_cast<double>(stage.stepping.steps) > fast_compression;
 }
-
-bool is_fast(const Stage& stage) { return !needs_trial(stage) && strain_of_step(stage) > fast_step; }
 
 bool relaxes(const Stage& stage) { return !needs_trial(stage) && !stage.leg.drives(); }
 
@@ -73,10 +74,12 @@ class FastTrial {
 
  private:
   void run(const Stage& stage, double budget);
+  void come_to_rest();
 
   TrialPacking few_;
   const Material& material_;
-  bool fly_ = false;
+  bool moved_ = false;             // by a fast stage
+  std::optional<double> rest_at_;  // volume fraction at which slow stages have left them, not yet gone to
   double end_;
   ManyOverFew many_over_few_;
   std::optional<LegCost> told_;
@@ -87,21 +90,27 @@ void FastTrial::run(const Stage& stage, double budget) {
   if (told_ && !told_->ended) told_.reset();
 }
 
+void FastTrial::come_to_rest() {
+  if (!rest_at_) return;
+  few_.compress_to(*rest_at_);
+  few_.settle();
+  rest_at_.reset();
+}
+
 bool FastTrial::take(const StageCost& cost) {
   const Stage& stage = cost.stage;
-  const double left = end_ - thread_seconds();
   told_.reset();
-  if (is_fast(stage)) {
-    if (left > 0) run(stage, left);
+  const bool fast = is_fast(stage), left_moving = !rest_at_ && moved_;
+  if (fast) come_to_rest();
+  const double left = end_ - thread_seconds();
+  if (left <= 0) return false;
+  if (fast || (relaxes(stage) && left_moving)) run(stage, fast ? left : share_of_rest * left);
+  if (fast) {
     if (told_) many_over_few_.see(material_, few_, stage.stepping.dt);
-    fly_ = true;
+    moved_ = true;
     return told_.has_value();
   }
-  if (relaxes(stage) && fly_ && left > 0) run(stage, share_of_rest * left);
-  if (told_) return true;
-  fly_ = false;
-  few_.compress_to(cost.nu[1]);
-  few_.settle();
+  if (!told_) rest_at_ = cost.nu[1];
   return !stage.leg.control.by_stress();
 }
 
@@ -117,20 +126,30 @@ void widen(const Stage& stage, double ratio, LegCost& cost) {
 
 bool compresses_fast(const Stage& stage) {
   const StrainTensor& strain = stage.leg.strain;
-  return is_fast(stage) && std::abs(strain[0] + strain[1] + strain[2]) > same_density;
+  return is_fast(stage) && std::abs(strain[0] + strain[1] + strain[2]) > same_volume;
 }
 
-std::vector<bool> flying(const std::vector<StageCost>& stages, double contact_duration) {
-  std::vector<bool> fly;
-  bool before = false;
+double time_to_rest(const Material& material) {
+  if (!(material.gamma_b > 0)) return std::numeric_limits<double>::infinity();
+  return relaxation_times * material.rho * sphere_volume(material.r_mean) / material.gamma_b;
+}
+
+std::vector<bool> still_moving(const std::vector<StageCost>& stages, double time_to_rest) {
+  std::vector<bool> list;
+  bool moving = false;
+  double calm = 0;  // time since the last fast stage, us
   for (const StageCost& cost : stages) {
     const Stage& stage = cost.stage;
-    const bool goes_on =
-        is_fast(stage) || (relaxes(stage) && stage.leg.duration < cooling * contact_duration);
-    before = compresses_fast(stage) || (before && goes_on);
-    fly.push_back(before);
+    if (compresses_fast(stage)) moving = true;
+    if (is_fast(stage))
+      calm = 0;
+    else if (!stage.leg.minimises())
+      calm += stage.leg.duration;
+    moving = moving && calm < time_to_rest;
+    list.push_back(moving);
+    moving = moving && !stage.leg.minimises();
   }
-  return fly;
+  return list;
 }
 
 std::vector<std::optional<LegCost>> try_fast_stages(TrialPacking few, const Material& material,

@@ -1,4 +1,4 @@
-// What fast compressions take: their grains fly as they have since the beginning, which no packing at rest
+// What fast compressions take: their grains move as they have since the beginning, which no packing at rest
 // tells. They are run from there in fewer grains.
 #pragma once
 
@@ -17,10 +17,13 @@ namespace grainlaw::dem {
 /// in jammed grains, 0.85 at 2e-5 in a gas, 0.6 at 5e-5 in both.
 bool compresses_fast(const Stage& stage);
 
-/// Of each stage, whether its grains fly as a fast compression has left them: such a compression, and fast
-/// shear and relaxations of less than a thousand contact durations (us) until grains are at rest. In longer
-/// ones most steps are done at rest.
-std::vector<bool> flying(const std::vector<StageCost>& stages, double contact_duration);
+/// Time that the background takes to bring moving grains to rest, us: seven times m/gamma_b; infinite
+/// without it.
+double time_to_rest(const Material& material);
+
+/// Of each stage, whether its grains move as a fast compression has left them: such a compression, and what
+/// comes after it until most of its time is at rest, or the energy has been minimised.
+std::vector<bool> still_moving(const std::vector<StageCost>& stages, double time_to_rest);
 
 /// How long such stages are run in all, unless one asks for more, in processor seconds.
 constexpr double usual_fast_trial = 2;

@@ -20,11 +20,13 @@ struct StageCost {
   Stage stage;
   double nu[2];                ///< volume fraction at begin and end
   double passes = 0;           ///< over the contacts, planned or tried
-  double seconds = 0;          ///< without rows; of a relaxation, which may end early, the most
+  double seconds = 0;          ///< without rows; of a relaxation that is not tried, the most
   double least = 0, most = 0;  ///< between which they mostly lie; `seconds` both, where no range is known
   bool tried = false;          ///< whether it was run, or a part of it (see try_leg)
-  bool flies = false;          ///< whether its grains do (see flying): if not tried, it takes more
-  double bytes = 0;            ///< held beside the grains while it lasts
+  double ran = 0;              ///< s, after which a run of it was given up; it takes more
+  bool still_moves = false;  ///< whether its grains do, of before (see still_moving), and what is said of it
+                             ///< comes from grains at rest: it takes more
+  double bytes = 0;          ///< held beside the grains while it lasts
 };
 
 struct ObserverCost {

@@ -56,8 +56,7 @@ double fastest_of(const Mat3& gradient) {
 double way_of(const Leg& leg, const Mat3& gradient) {
   const double trace = gradient(0, 0) + gradient(1, 1) + gradient(2, 2);
   if (std::abs(trace) > 1e-6 * fastest_of(gradient)) return shortest_way;
-  const double strain = std::max(std::abs(leg.gamma.value_or(0)), largest_component(leg.strain));
-  return std::clamp(strain, shortest_way, longest_way);
+  return std::clamp(largest_strain(leg), shortest_way, longest_way);
 }
 
 /// How many make this strain; 0 where the box is at rest.
@@ -100,6 +99,10 @@ class ScratchFolder {
 };
 
 }  // namespace
+
+double largest_strain(const Leg& leg) {
+  return std::max(std::abs(leg.gamma.value_or(0)), largest_component(leg.strain));
+}
 
 Trial::Trial(const Material& material, const State& state, const Stage& stage)
     : material_(material),

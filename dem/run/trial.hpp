@@ -28,6 +28,9 @@ struct TrialCost {
   ModuliCost moduli;  ///< of a state, not per grain
 };
 
+/// The largest component of a leg's strain, or its gamma.
+double largest_strain(const Leg& leg);
+
 class Trial {
  public:
   /// At the mean rate of `stage` and with its step; where that minimises, with a step of the default. The box

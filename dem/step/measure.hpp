@@ -21,6 +21,8 @@ struct Wanted {
   static constexpr Wanted everything() { return {true, true, true, true, true}; }
   /// Whether the contacts are to be walked through.
   constexpr bool of_contacts() const { return stress || fabric || coordination || energies; }
+  /// Whether the velocities of the full step are needed.
+  constexpr bool of_velocity() const { return stress || kinetic_stress || energies; }
   constexpr Wanted operator|(const Wanted& other) const {
     return {stress || other.stress, kinetic_stress || other.kinetic_stress, fabric || other.fabric,
             coordination || other.coordination, energies || other.energies};
@@ -66,7 +68,7 @@ Energies energies(const ContactLaw& law, const Grains& grains, const Quads& velo
 double kinetic_energy(const Grains& grains, const Quads& velocity);
 
 /// What is wanted at once, each to the same bit whatever else is. `velocity` is the fluctuation velocity at
-/// the time of the positions, mm/us, in the order of the grains.
+/// the time of the positions, mm/us, in the order of the grains; it may be empty unless wanted.of_velocity().
 Measurement measure(const ContactLaw& law, const Grains& grains, const Quads& velocity, const Cell& cell,
                     const Pairs& pairs, const Wanted& wanted = Wanted::everything());
 

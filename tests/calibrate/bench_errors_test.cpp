@@ -114,6 +114,8 @@ TEST(BenchErrors, RecommendsTheCheapestWithinTwoBands) {
                               Judge::chance, 1e-3);
   ASSERT_EQ(best.size(), 1u);
   EXPECT_EQ(best[0].value, 10);
+  EXPECT_EQ(best[0].excused, 0.019);  // within two bands of 0.01
+  EXPECT_EQ(best[0].quantity, "P");
 }
 
 TEST(BenchErrors, AnErrorBelowTheWantedOneIsGoodEnough) {
@@ -121,6 +123,7 @@ TEST(BenchErrors, AnErrorBelowTheWantedOneIsGoodEnough) {
   quiet.comparison.band = 1e-9;
   const std::vector<BenchError> lines{quiet, line(Knob::time_step, 200, 40, 0, true)};
   EXPECT_EQ(recommend(lines, Judge::chance, 1e-3).at(0).value, 5);
+  EXPECT_EQ(recommend(lines, Judge::chance, 1e-3).at(0).quantity, "");  // nothing to excuse
   EXPECT_EQ(recommend(lines, Judge::chance, 8e-4).at(0).value, 200);
 }
 
@@ -200,7 +203,7 @@ std::vector<BenchError> table_of(const fs::path& csv) {
 }
 
 /// What is measured stands in data/bench/dem-9261; a scene that says nothing follows it.
-TEST(BenchErrors, DefaultsOfASceneAreTheCheapestForTheirError) {
+TEST(BenchErrors, DefaultsOfASceneAreTheCheapestForAQuarterOfAPercent) {
   const std::vector<BenchError> table = table_of(GRAINLAW_DATA_DIR "/bench/dem-9261/speed-against-error.csv");
   const BenchSetting defaults;  // those of a scene: Bench.OneOfTheValuesIsTheDefault
   const auto cheapest = [&](Judge judge, double wanted) {
@@ -209,7 +212,7 @@ TEST(BenchErrors, DefaultsOfASceneAreTheCheapestForTheirError) {
     return best;
   };
   for (const Judge judge : {Judge::chance, Judge::one_packing}) {
-    EXPECT_EQ(cheapest(judge, default_error),
+    EXPECT_EQ(cheapest(judge, wanted_errors[1]),
               (std::map<Knob, double>{{Knob::time_step, defaults.steps}, {Knob::rate, defaults.rate}}));
     // Who wants less has to go slower, and who allows more may go faster.
     EXPECT_EQ(cheapest(judge, wanted_errors[0])[Knob::rate], 0.3);

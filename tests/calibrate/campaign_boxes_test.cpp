@@ -63,11 +63,49 @@ TEST(CampaignBoxes, AreThoseOfTheStateThatATestStartsFrom) {
   EXPECT_THAT(refusal(iso + "," + sheared("d2", 1.001 * most, from)), HasSubstr("tests[1].path.segments[0]"));
 }
 
-TEST(CampaignBoxes, OfTestsThatStartElsewhereAreForTheirTurn) {
+/// A test called `first` with these segments.
+std::string first(const std::string& segments) {
+  return R"({"name": "first", "role": "predict", "path": {"segments": [)" + segments + "]}},";
+}
+
+TEST(CampaignBoxes, AreFollowedThroughTheTestsBefore) {
   const double most = narrowest_eps_dev(0.64);
-  const std::string first =
-      R"({"name": "first", "role": "predict", "path": {"segments": [{"mode": "uni", "controls": {"nu": 0.7}}]}},)";
-  EXPECT_EQ(refusal(first + sheared("d2", 2 * most, R"({"test": "first"})")), "accepted");
+  const std::string from = R"({"test": "first"})";
+  const auto d2_of = [](double eps_dev) {
+    return R"({"mode": "d2", "controls": {"eps_dev": )" + to_text(eps_dev) + "}}";
+  };
+  // D2 goes on where D2 has been, with rest between; and back, it gains room.
+  for (const std::string& rest : {std::string(), std::string(R"(, {"mode": "relax"})")}) {
+    const std::string half = first(d2_of(0.5 * most) + rest);
+    EXPECT_EQ(refusal(half + sheared("d2", 0.499 * most, from)), "accepted");
+    EXPECT_THAT(refusal(half + sheared("d2", 0.501 * most, from)), HasSubstr("tests[1].path.segments[0]"));
+    EXPECT_EQ(refusal(half + sheared("d2", -1.499 * most, from)), "accepted");
+  }
+  // From the end of the first segment, not of the last.
+  const std::string two = first(d2_of(0.5 * most) + "," + d2_of(0.8 * most));
+  EXPECT_EQ(refusal(two + sheared("d2", 0.499 * most, R"({"test": "first", "segment": 0})")), "accepted");
+  EXPECT_THAT(refusal(two + sheared("d2", 0.499 * most, from)), HasSubstr("tests[1].path.segments[0]"));
+  // Through a test between.
+  const std::string between = R"({"name": "between", "role": "predict", "from": {"test": "first"}, "path":
+      {"segments": [{"mode": "iso", "controls": {"nu": 0.65}}, {"mode": "iso", "controls": {"nu": 0.64}}]}},)";
+  const std::string half = first(d2_of(0.5 * most)) + between;
+  EXPECT_EQ(refusal(half + sheared("d2", 0.499 * most, R"({"test": "between"})")), "accepted");
+  EXPECT_THAT(refusal(half + sheared("d2", 0.501 * most, R"({"test": "between"})")), HasSubstr("tests[2]"));
+}
+
+/// UNI makes the box narrower along z by its strain, D3 by two thirds of eps_dev.
+TEST(CampaignBoxes, AreThoseOfAStateOnTheWay) {
+  const std::string uni = first(R"({"mode": "uni", "controls": {"nu": 0.72}})");
+  const double room = narrowest_eps_dev(0.64) / std::sqrt(3), most = 1.5 * (room - std::log(0.68 / 0.64));
+  const std::string from = R"({"test": "first", "nu": 0.68})";
+  EXPECT_EQ(refusal(uni + sheared("d3", 0.999 * most, from)), "accepted");
+  EXPECT_THAT(refusal(uni + sheared("d3", 1.001 * most, from)), HasSubstr("tests[1].path.segments[0]"));
+}
+
+TEST(CampaignBoxes, AfterAServoAreForTheirTurn) {
+  const double most = narrowest_eps_dev(0.64);
+  const std::string servo = first(R"({"mode": "triaxial", "stress": 0.01, "amount": 0.1})");
+  EXPECT_EQ(refusal(servo + sheared("d2", 2 * most, R"({"test": "first"})")), "accepted");
   EXPECT_EQ(refusal(sheared("constant_p", 2 * most)), "accepted");
 }
 

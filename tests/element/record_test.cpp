@@ -55,7 +55,8 @@ TEST_F(RecordFile, RefusesWhatIsNotARecord) {
   EXPECT_EQ(refusal("nu,nu\n0.7,1\n"), "nu: line 1: column is given twice");
   EXPECT_EQ(refusal("P\n0.7\n", {"nu"}), "nu: column is missing");
   EXPECT_EQ(refusal("nu\n0.7\n", {"P"}),
-            "P: column is missing; a test writes it where measure.standard of its scene has \"stress\"");
+            "P: column is missing; a record of simulate has it where measure.standard of its scene names "
+            "\"stress\"");
   EXPECT_EQ(refusal("nu,P\n0.7,0.0123"), "is cut short: its last line does not end with a newline");
   EXPECT_EQ(refusal("nu;P\n0,7;1\n"),
             "line 1: columns must be separated by commas (and numbers have a decimal point), got semicolons");
