@@ -186,7 +186,7 @@ Action add_simulate(CLI::App& program) {
       ->add_option(
           "--explain-seconds", arguments->explain_seconds,
           "processor seconds that --explain may run each stage (default: 3 where its steps are known in "
-          "advance; else 1.5 in the grains of the run, and 0.5 in others as dense), and fast compressions "
+          "advance; else 4 in the grains of the run, and 0.5 in others as dense), and fast compressions "
           "together in fewer grains (default: 2)")
       ->type_name("SECONDS");
   command

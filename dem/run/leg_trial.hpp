@@ -31,7 +31,7 @@ enum class Likeness {
 };
 
 /// How long a leg is tried, at most, unless one asks for more, in processor seconds.
-constexpr double usual_trial(Likeness like) { return like == Likeness::all ? 1.5 : 0.5; }
+constexpr double usual_trial(Likeness like) { return like == Likeness::all ? 4 : 0.5; }
 
 /// Runs a stage for so many seconds, or as a whole if it takes no more. Of one that does not end, with p the
 /// share that was done in n passes and N the passes that are planned,
