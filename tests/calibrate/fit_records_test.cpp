@@ -329,10 +329,10 @@ TEST_F(FitRecords, RefuseARecordWhoseSceneLeavesColumnsOut) {
   };
   EXPECT_THAT(leave_out("F_dev", R"(["stress", "coordination", "energy_ratio"])"),
               AllOf(HasSubstr("iso-s1/record.csv: F_dev: column is missing"),
-                    HasSubstr("where measure.standard of its scene has \"fabric\"")));
+                    HasSubstr("where measure.standard of its scene names \"fabric\"")));
   EXPECT_THAT(leave_out("Ek_over_Ep", R"(["stress", "fabric", "coordination"])"),
               AllOf(HasSubstr("iso-s1/record.csv: Ek_over_Ep: column is missing"),
-                    HasSubstr("where measure.standard of its scene has \"energy_ratio\"")));
+                    HasSubstr("where measure.standard of its scene names \"energy_ratio\"")));
 }
 
 TEST_F(FitRecords, RefuseAnEmptyFieldWhereANumberMustBe) {
