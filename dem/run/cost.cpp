@@ -213,20 +213,14 @@ double shortest_time(const std::vector<StageCost>& stages, std::size_t grains) {
   return fastest * steps * static_cast<double>(grains);
 }
 
-/// Processor seconds that a stage with planned steps may be run for.
-double budget_of_planned(const CostOptions& options) {
-  constexpr double usual = 3;
-  return options.trial_seconds.value_or(usual);
-}
-
 /// Processor seconds that a stage may take in the grains that it begins with; 0 where it would take more, or
 /// where those before it have taken too long.
 double budget_of(const StageCost& cost, std::size_t grains, double spent, const CostOptions& options) {
-  constexpr double all_seconds = 6;  // of all before it
+  constexpr double whole_seconds = 3, all_seconds = 6;  // of a stage with planned steps; of all before it
   const Stage& stage = cost.stage;
   if (!options.trial_seconds && spent > all_seconds) return 0;
   if (needs_trial(stage)) return options.trial_seconds.value_or(usual_trial(Likeness::all));
-  const double budget = budget_of_planned(options);
+  const double budget = options.trial_seconds.value_or(whole_seconds);
   const double expected =
       cost.tried ? cost.seconds : fastest * static_cast<double>(grains * stage.stepping.steps);
   return expected < budget ? budget : 0;
@@ -264,16 +258,15 @@ TrialPacking first_trial(const Scene& scene, const State& start) {
   return packing;
 }
 
-constexpr double soon_run = 0.1;  // of a stage's time: a scene so short at its fastest is rather run
+constexpr double soon_run = 0.3;  // s: a scene so short at its fastest is rather run
 
 /// Fast compressions, and what their grains do after them, where a trial has fewer grains than the scene.
 void tell_fast_stages(const Scene& scene, const State& start, const CostOptions& options,
                       std::vector<StageCost>& stages) {
   if (std::none_of(stages.begin(), stages.end(), [](const StageCost& cost) { return cost.still_moves; }))
     return;
-  if (!is_laid_out(start.count()) ||
-      shortest_time(stages, start.count()) < soon_run * budget_of_planned(options))
-    return;
+  if (!is_laid_out(start.count())) return;
+  if (!options.trial_seconds && shortest_time(stages, start.count()) < soon_run) return;
   const TrialPacking few = first_trial(scene, start);
   const double size = static_cast<double>(start.count()) / static_cast<double>(few.base().count());
   const std::vector<std::optional<LegCost>> told =
