@@ -12,13 +12,13 @@
 
 namespace grainlaw::dem {
 
-/// Whether a stage changes the density at more than 1e-5 of strain a step, in steps that are known in
-/// advance. From there on a trial of grains that were at rest tells too little: 0.8 of what it takes at 1e-5
-/// in jammed grains, 0.85 at 2e-5 in a gas, 0.6 at 5e-5 in both.
+/// Whether a stage changes the density at more than 1e-5 of strain (its largest component) a step, in steps
+/// that are known in advance. From there on a trial of grains that were at rest tells too little: 0.8 of what
+/// it takes at 1e-5 in jammed grains, 0.85 at 2e-5 in a gas, 0.6 at 5e-5 in both.
 bool compresses_fast(const Stage& stage);
 
-/// Time that the background takes to bring moving grains to rest, us: seven times m/gamma_b; infinite
-/// without it.
+/// Time that the background takes to bring moving grains to rest, us: seven times m/gamma_b, m the mass of a
+/// grain of radius r_mean; infinite without it.
 double time_to_rest(const Material& material);
 
 /// Of each stage, whether its grains move as a fast compression has left them: such a compression, and what

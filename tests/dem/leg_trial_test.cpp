@@ -12,23 +12,14 @@
 #include "grainlaw/dem/run/measured_cost.hpp"
 #include "grainlaw/dem/scene/scene.hpp"
 #include "packings.hpp"
+#include "planned_stage.hpp"
 
 namespace grainlaw::dem {
 namespace {
 
 constexpr double nu = 0.75;
 
-/// The first stage of a path with this segment, from 200 grains.
-Stage stage_of(const std::string& segment) {
-  const Scene scene =
-      Scene::read(Reader(parse_json(R"({"preparation": {"count": 200, "nu": 0.75}, "path": {"segments": [)" +
-                                        segment + R"(]}, "measure": {"rows": 10}})",
-                                    "s.json"),
-                         "s.json"),
-                  "");
-  const std::vector<Stage> stages = plan_stages(scene, nu, LongestSteps(scene, scene.material.r_min()));
-  return stages.back();
-}
+Stage stage_of(const std::string& segment) { return test::planned_stage(segment, nu, 10); }
 
 State balanced(const Material& material, double at_nu) {
   StaticPacking packing(material, test::squeezed(material, 200, 3, at_nu));

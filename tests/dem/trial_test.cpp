@@ -9,21 +9,14 @@
 
 #include "grainlaw/dem/scene/scene.hpp"
 #include "packings.hpp"
+#include "planned_stage.hpp"
 
 namespace grainlaw::dem {
 namespace {
 
 constexpr double nu = 0.7;
 
-Stage stage_of(const std::string& segment) {
-  const Scene scene =
-      Scene::read(Reader(parse_json(R"({"preparation": {"count": 200, "nu": 0.7}, "path": {"segments": [)" +
-                                        segment + R"(]}, "measure": {"rows": 2}})",
-                                    "s.json"),
-                         "s.json"),
-                  "");
-  return plan_stages(scene, nu, LongestSteps(scene, scene.material.r_min())).back();
-}
+Stage stage_of(const std::string& segment) { return test::planned_stage(segment, nu, 2); }
 
 State grains() { return test::squeezed(Material{}, 200, 3, nu); }
 
