@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string>
 
-#include "grainlaw/dem/scene/scene.hpp"
 #include "packings.hpp"
 #include "planned_stage.hpp"
 
