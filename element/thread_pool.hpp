@@ -34,19 +34,12 @@ class ThreadPool {
   int threads() const { return static_cast<int>(others_.size()) + 1; }
 
   /// Calls f(0) ... f(threads - 1), each on a thread of its own, and returns when all have. Throws what one
-  /// of them has thrown, then.
+  /// of them has thrown, then. Each thread calls a copy of f: so what f has captured by value lies on no line
+  /// of memory that another thread writes to.
   template <class F>
-  void run(F&& f) {
-    const auto guarded = [&](int t) {
-      try {
-        f(t);
-      } catch (...) {
-        failures_[static_cast<std::size_t>(t)] = std::current_exception();
-      }
-    };
-    using Function = std::remove_reference_t<decltype(guarded)>;
-    start([](const void* function, int t) { (*static_cast<Function*>(function))(t); }, &guarded);
-    guarded(0);
+  void run(const F& f) {
+    start(&call<F>, &f);
+    call<F>(*this, &f, 0);
     for (int left = left_.load(std::memory_order_acquire); left != 0;
          left = left_.load(std::memory_order_acquire))
       wait_while(left_, left);
@@ -62,7 +55,17 @@ class ThreadPool {
     for (std::thread& other : others_) other.join();
   }
 
-  using Job = void (*)(const void*, int);
+  using Job = void (*)(ThreadPool&, const void*, int);
+
+  template <class F>
+  static void call(ThreadPool& pool, const void* function, int t) {
+    try {
+      const F own(*static_cast<const F*>(function));
+      own(t);
+    } catch (...) {
+      pool.failures_[static_cast<std::size_t>(t)] = std::current_exception();
+    }
+  }
 
   void start(Job job, const void* function) {
     job_ = job;
@@ -76,7 +79,7 @@ class ThreadPool {
     for (unsigned turn = 0;; ++turn) {
       wait_while(turn_, turn);
       if (job_ == nullptr) return;
-      job_(function_, t);
+      job_(*this, function_, t);
       if (left_.fetch_sub(1, std::memory_order_acq_rel) == 1) left_.notify_one();
     }
   }

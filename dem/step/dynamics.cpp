@@ -104,10 +104,14 @@ double Dynamics::advance_grains(const Cell& next) {
 }
 
 void Dynamics::update_list(double lookahead) {
-  if (behind_) team_->gather(grains_);
-  const std::uint64_t sorts = neighbours_.sorts();
-  neighbours_.update(grains_, cell_, lookahead, team_ ? &team_->pool() : nullptr);
-  if (team_) team_->deal(neighbours_.pairs(), grains_, neighbours_.sorts() != sorts);
+  if (!team_) return neighbours_.update(grains_, cell_, lookahead);
+  if (behind_) team_->gather_motion(grains_);
+  const bool sorted = !neighbours_.update_inner(grains_, cell_, lookahead, &team_->pool());
+  if (sorted) {
+    if (behind_) team_->gather(grains_);
+    neighbours_.update(grains_, cell_, lookahead, &team_->pool());
+  }
+  team_->deal(neighbours_.pairs(), grains_, sorted);
 }
 
 void Dynamics::catch_up() const {

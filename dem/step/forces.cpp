@@ -26,7 +26,8 @@ using grainlaw::dem::root;  // of numbers; that of vectors is found by its argum
 #include "grainlaw/dem/step/contact_law-inl.hpp"
 }  // namespace of_vectors
 
-static_assert(GroupedPairs::width % lanes == 0 && CrossingPairs::width % lanes == 0);
+static_assert(GroupedPairs::width % lanes == 0 && CrossingPairs::width % lanes == 0 &&
+              HaloPairs::width % lanes == 0);
 constexpr std::size_t second = lanes - 4;  // from a grain to the one in the other half of its vector
 
 /// What of the motion the force depends on: nothing where the law is not damped; else the grains' velocities,
@@ -127,20 +128,60 @@ class Frontier {
   std::size_t fetched_ = 0;
 };
 
+/// Takes a line of the cache from all other cores, to write into it.
+HWY_INLINE void fetch_to_write(const std::byte* line) {
+#if HWY_ARCH_X86
+  asm volatile("prefetchw %0" : : "m"(*line));  // __builtin_prefetch(line, 1) only reads, on most targets
+#else
+  __builtin_prefetch(line, 1);
+#endif
+}
+
+/// Memory to write into later on, some lines of it with each group: all at once would hold up the loop.
+class WrittenSoon {
+ public:
+  WrittenSoon(std::span<const std::span<std::byte>> parts, std::size_t groups) : parts_(parts) {
+    std::size_t lines = 0;
+    for (const std::span<std::byte> part : parts) lines += part.size() / line + 1;
+    at_once_ = lines / groups + 1;
+  }
+  template <Motion>
+  HWY_INLINE void fetch(const GroupedPairs::Group&, const Groups&, const Quad*, const Quad*, const Quad*) {
+    for (std::size_t n = 0; n < at_once_ && !parts_.empty(); ++n) {
+      if (at_ < parts_.front().size()) {
+        fetch_to_write(&parts_.front()[at_]);
+        at_ += line;
+      } else {
+        parts_ = parts_.subspan(1);
+        at_ = 0;
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t line = 64;
+  std::span<const std::span<std::byte>> parts_;
+  std::size_t at_ = 0, at_once_;
+};
+
+struct NothingAhead {
+  template <Motion>
+  HWY_INLINE void fetch(const GroupedPairs::Group&, const Groups&, const Quad*, const Quad*, const Quad*) {}
+};
+
 /// Each group of grains stays in registers, places, velocities and forces, while it meets its partners. A row
 /// of pairs acts only after the next one is computed: what waits for a root then has something to do beside
 /// it.
-template <Motion of, bool far>
+template <Motion of, class Ahead>
 void add_forces_within(const Constants& constants, const Quad* place, const Quad* motion, const Groups& list,
-                       Quad* force) {
+                       Ahead ahead, Quad* force) {
   if (list.groups.empty()) return;
   Row row{{wide(0), wide(0), wide(0), wide(0)}, wide(0)};  // nothing acts on the first grains yet
   Wide total[4] = {wide(0), wide(0), wide(0), wide(0)};
   const std::uint32_t *grain = list.groups[0].grain.data(), *partner = grain;
-  Frontier frontier;
   for (std::size_t g = 0; g < list.groups.size(); ++g) {
     const GroupedPairs::Group& group = list.groups[g];
-    if constexpr (far) frontier.fetch<of>(group, list, place, motion, force);
+    ahead.template fetch<of>(group, list, place, motion, force);
     for (std::size_t half = 0; half < GroupedPairs::width; half += lanes) {
       const std::uint32_t* const own = &group.grain[half];
       Wide place_i[4], motion_i[4];
@@ -225,9 +266,53 @@ void add_forces_across(const Constants& constants, const Quad* place, const Quad
   }
 }
 
+template <int k>
+HWY_INLINE void act_on_second_of(const Row& row, const HaloPairs::Pair* pair, Quad* force) {
+  const Wide f = spread<k>(row.strength) * row.branch[k];
+  subtract(lower(f), force[pair[k].j]);
+  if constexpr (lanes == 8) subtract(upper(f), force[pair[k + second].j]);
+}
+
+HWY_INLINE void act_on_second(const Row& row, const HaloPairs::Pair* pair, Quad* force) {
+  act_on_second_of<0>(row, pair, force);
+  act_on_second_of<1>(row, pair, force);
+  act_on_second_of<2>(row, pair, force);
+  act_on_second_of<3>(row, pair, force);
+}
+
+/// Adds to the second grain of each pair alone.
 template <Motion of>
-void add_to_each(const ContactLaw& law, const Grains& grains, const Mat3& gradient, const Groups& within,
-                 const CrossingPairs& crossing, const Quad* shifts, Quad* force) {
+void add_forces_on_second(const Constants& constants, const Quad* place, const Quad* motion,
+                          const HaloPairs& list, Quad* force) {
+  if (list.pairs.empty()) return;
+  const auto compute = [&](const HaloPairs::Pair* pair) HWY_ATTR {
+    Row row;
+    Wide velocity[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const HaloPairs::Pair &a = pair[k], &b = pair[k + second];
+      row.branch[k] =
+          mul_sub_from(constants.apart, rows(place[a.j], place[b.j]), rows(place[a.i], place[b.i]));
+      if constexpr (of != Motion::none)
+        velocity[k] = rows(motion[a.i], motion[b.i]) - rows(motion[a.j], motion[b.j]);
+    }
+    row.strength = strength_of<of>(constants, row.branch, velocity);
+    return row;
+  };
+  const HaloPairs::Pair *pair = list.pairs.data(), *const end = pair + list.pairs.size();
+  for (Row row = compute(pair);;) {
+    const HaloPairs::Pair* const next = pair + lanes;
+    if (next == end) return act_on_second(row, pair, force);
+    const Row computed = compute(next);
+    act_on_second(row, pair, force);
+    row = computed;
+    pair = next;
+  }
+}
+
+template <Motion of>
+void add_to_each(const ContactLaw& law, const Grains& grains, const Mat3& gradient, const HaloPairs& halo,
+                 const Groups& within, const CrossingPairs& crossing, const Quad* shifts,
+                 std::span<const std::span<std::byte>> written_soon, Quad* force) {
   const auto both = [&](std::size_t a, std::size_t b) { return wide(gradient(a, b) + gradient(b, a)); };
   const Constants constants{std::bit_cast<of_vectors::ContactLaw>(law),
                             wide(gradient(0, 0)),
@@ -238,18 +323,23 @@ void add_to_each(const ContactLaw& law, const Grains& grains, const Mat3& gradie
                             both(0, 1)};
   const Quad* const place = grains.place.data();
   const Quad* const motion = grains.motion.data();
+  add_forces_on_second<of>(constants, place, motion, halo, force);
   if (grains.count() > most_cached)
-    add_forces_within<of, true>(constants, place, motion, within, force);
+    add_forces_within<of>(constants, place, motion, within, Frontier{}, force);
+  else if (written_soon.empty() || within.groups.empty())
+    add_forces_within<of>(constants, place, motion, within, NothingAhead{}, force);
   else
-    add_forces_within<of, false>(constants, place, motion, within, force);
+    add_forces_within<of>(constants, place, motion, within, WrittenSoon(written_soon, within.groups.size()),
+                          force);
   add_forces_across<of>(constants, place, motion, crossing, shifts, force);
 }
 
-void add_forces(const ContactLaw& law, const Grains& grains, const Cell& cell, const Groups& within,
-                const CrossingPairs& crossing, const Quad* shifts, Quad* force) {
+void add_forces(const ContactLaw& law, const Grains& grains, const Cell& cell, const HaloPairs& halo,
+                const Groups& within, const CrossingPairs& crossing, const Quad* shifts,
+                std::span<const std::span<std::byte>> written_soon, Quad* force) {
   const auto add = cell.tilted() ? add_to_each<Motion::tilted> : add_to_each<Motion::straight>;
-  (law.damped() ? add : add_to_each<Motion::none>)(law, grains, cell.gradient(), within, crossing, shifts,
-                                                   force);
+  (law.damped() ? add : add_to_each<Motion::none>)(law, grains, cell.gradient(), halo, within, crossing,
+                                                   shifts, written_soon, force);
 }
 
 std::size_t lanes_here() { return lanes; }
@@ -273,21 +363,20 @@ void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell,
 void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains) {
   const std::array<Quad, 27> shifts = cell.shifts();
   HWY_DYNAMIC_DISPATCH(add_forces)
-  (law, grains, cell, {pairs.within.groups, pairs.within.partner.data(), grains.count(), pairs.within.reach},
-   pairs.crossing, shifts.data(), grains.force.data());
+  (law, grains, cell, {},
+   {pairs.within.groups, pairs.within.partner.data(), grains.count(), pairs.within.reach}, pairs.crossing,
+   shifts.data(), {}, grains.force.data());
 }
 
-void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share) {
+void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share,
+                        std::span<const std::span<std::byte>> written_soon) {
   const std::array<Quad, 27> shifts = cell.shifts();
-  const auto add = [&](const Groups& within, const CrossingPairs& crossing) {
-    HWY_DYNAMIC_DISPATCH(add_forces)
-    (law, share.grains, cell, within, crossing, shifts.data(), share.grains.force.data());
-  };
-  add({{}, nullptr, 0, 0}, share.halo);
   const std::span<const GroupedPairs::Group> groups = pairs.within.groups;
-  add({groups.subspan(share.first_group, share.last_group - share.first_group), pairs.within.partner.data(),
-       share.grains.count(), pairs.within.reach},
-      share.crossing);
+  HWY_DYNAMIC_DISPATCH(add_forces)
+  (law, share.grains, cell, share.halo,
+   {groups.subspan(share.first_group, share.last_group - share.first_group), pairs.within.partner.data(),
+    share.grains.count(), pairs.within.reach},
+   share.crossing, shifts.data(), written_soon, share.grains.force.data());
 }
 
 }  // namespace grainlaw::dem

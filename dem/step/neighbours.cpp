@@ -29,25 +29,6 @@ double strayed(const Quad& x, const Quad& reference, const Mat3& deformation) {
   return a * a + b * b + c * c;
 }
 
-/// The box around the centres of some spheres, and the largest radius of them.
-struct Enclosure {
-  double reach = 0;
-  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-
-  void enclose(const Quad& b) {  // a comparison drops what is not a number
-    reach = std::max(reach, b.w);
-    low = {std::min(low[0], b.x), std::min(low[1], b.y), std::min(low[2], b.z)};
-    high = {std::max(high[0], b.x), std::max(high[1], b.y), std::max(high[2], b.z)};
-  }
-  bool may_be_near(const Quad& a) const {
-    const Vec3 at{a.x, a.y, a.z};
-    bool inside = true;
-    for (std::size_t c = 0; c < 3; ++c)
-      inside = inside && at[c] > low[c] - reach - a.w && at[c] < high[c] + reach + a.w;
-    return inside;
-  }
-};
-
 /// Whether the spheres of radius w about a and the image of b meet.
 bool near(const Quad& a, const Quad& b, const Quad& shift) {
   const double x = a.x - b.x - shift.x, y = a.y - b.y - shift.y, z = a.z - b.z - shift.z, reach = a.w + b.w;
@@ -107,6 +88,28 @@ void group(const ByGrain& pairs, std::uint32_t end, GroupedPairs& to) {
 
 }  // namespace
 
+void Neighbours::Enclosure::enclose(const Quad& b) {  // a comparison drops what is not a number
+  reach = std::max(reach, b.w);
+  low = {std::min(low[0], b.x), std::min(low[1], b.y), std::min(low[2], b.z)};
+  high = {std::max(high[0], b.x), std::max(high[1], b.y), std::max(high[2], b.z)};
+}
+
+void Neighbours::Enclosure::enclose(const Enclosure& other) {
+  reach = std::max(reach, other.reach);
+  for (std::size_t c = 0; c < 3; ++c) {
+    low[c] = std::min(low[c], other.low[c]);
+    high[c] = std::max(high[c], other.high[c]);
+  }
+}
+
+bool Neighbours::Enclosure::may_be_near(const Quad& a) const {
+  const Vec3 at{a.x, a.y, a.z};
+  bool inside = true;
+  for (std::size_t c = 0; c < 3; ++c)
+    inside = inside && at[c] > low[c] - reach - a.w && at[c] < high[c] + reach + a.w;
+  return inside;
+}
+
 bool Neighbours::outdated(const Grains& grains, const Cell& cell) const {
   if (inner_reference_.size() != grains.count()) return true;
   const Mat3 deformation = cell.deformation_from(inner_cell_.edges());
@@ -132,33 +135,38 @@ void Neighbours::cut(std::size_t grains, ThreadPool* team) {
 template <class F>
 void Neighbours::each(ThreadPool* team, F&& f) {
   if (team == nullptr) return f(parts_[0]);
-  team->run([&](int t) { f(parts_[static_cast<std::size_t>(t)]); });
+  team->run([this, f](int t) { f(parts_[static_cast<std::size_t>(t)]); });
 }
 
 void Neighbours::update(Grains& grains, Cell& cell, double lookahead, ThreadPool* team) {
-  cut(grains.count(), team);
-  make_budgets(grains, lookahead, team);
-  if (!outer_covers(grains, cell, team)) {
-    sort_and_list(grains, cell);
-    make_budgets(grains, lookahead, team);    // in the new order, and within the new skin
-    if (!outer_covers(grains, cell, team)) {  // too narrow a box for flyers
-      for (const std::uint32_t i : flyers_) budget_[i] = flight_share * outer_skin_;
-      flyers_.clear();
-    }
-  }
+  if (update_inner(grains, cell, lookahead, team)) return;
+  sort_and_list(grains, cell);
+  if (update_inner(grains, cell, lookahead, team)) return;
+  // Too narrow a box for flyers.
+  for (const std::uint32_t i : flyers_) budget_[i] = flight_share * outer_skin_;
+  flyers_.clear();
   filter(grains, cell, team);
   ++updates_;
+}
+
+bool Neighbours::update_inner(const Grains& grains, const Cell& cell, double lookahead, ThreadPool* team) {
+  cut(grains.count(), team);
+  make_budgets(grains, lookahead, team);
+  if (!outer_covers(grains, cell, team)) return false;
+  filter(grains, cell, team);
+  ++updates_;
+  return true;
 }
 
 void Neighbours::make_budgets(const Grains& grains, double lookahead, ThreadPool* team) {
   const double least = std::min(rest_budget * unit_, 0.25 * flight_share * outer_skin_);
   const double most = flight_share * outer_skin_;
-  const auto flight_of = [&](std::uint32_t i) {
+  const auto flight_of = [&grains, lookahead](std::uint32_t i) {
     const Quad& v = grains.motion[i];
     return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * lookahead;
   };
   budget_.resize(grains.count());
-  each(team, [&](Part& part) {
+  each(team, [=, this](Part& part) {
     part.flyers.clear();
     for (std::uint32_t i = part.first; i < part.last; ++i) {
       const double flight = flight_of(i);
@@ -182,7 +190,7 @@ bool Neighbours::outer_covers(const Grains& grains, const Cell& cell, ThreadPool
   // Flyers and their partners must meet through one of the 27 images.
   const double widest = 2 * largest_radius_ + 2 * outer_skin_,
                allowed = 0.5 * (e * cell.narrowest() - widest);
-  each(team, [&](Part& part) {
+  each(team, [=, this, &grains](Part& part) {
     auto flyer = std::lower_bound(flyers_.begin(), flyers_.end(), part.first);
     part.flyers.clear();
     part.covered = true;
@@ -245,7 +253,7 @@ void Neighbours::filter(const Grains& grains, const Cell& cell, ThreadPool* team
   inner_reference_.resize(grains.count());
   const double inflate = 1 / (1 - box_budget);
   // Positions with the grain's reach (r_i + s_i)/e_min, so that one line tells all about a grain.
-  each(team, [&](const Part& part) {
+  each(team, [=, this, &grains](const Part& part) {
     for (std::uint32_t i = part.first; i < part.last; ++i) {
       const Quad& p = grains.place[i];
       inner_reference_[i] = {p.x, p.y, p.z, (p.w + budget_[i]) * inflate};
@@ -258,17 +266,22 @@ void Neighbours::filter(const Grains& grains, const Cell& cell, ThreadPool* team
     inner_reference_[i].x = std::numeric_limits<double>::quiet_NaN();  // near to none
   }
   const std::array<Quad, 27> shifts = cell.shifts();
-  each(team, [&](Part& part) {
+  runs_.resize(flying.empty() ? 0 : (grains.count() + run_length - 1) / run_length);
+  each(team, [this, &shifts, anyone_flies = !flying.empty()](Part& part) {
     filter_within(part);
     group({part.first, part.begin, part.near}, part.last, parts_.size() == 1 ? inner_.within : part.within);
     filter_crossing(part, shifts);
+    if (anyone_flies) enclose_runs(part);
   });
-  join(team);
-  list_flyers(flying, shifts);
-  inner_.crossing.fill_up();
-  each(team, [&](const Part& part) {
+  const std::vector<CrossingPairs::Pair> of_flyers = pairs_of_flyers(flying, shifts);
+  make_room(of_flyers.size());
+  each(team, [this](const Part& part) {
+    if (parts_.size() > 1) join(part);  // else it has written into the list
     for (std::uint32_t i = part.first; i < part.last; ++i) inner_reference_[i].w = budget_[i] * budget_[i];
   });
+  std::copy(of_flyers.begin(), of_flyers.end(),
+            inner_.crossing.pairs.end() - static_cast<std::ptrdiff_t>(of_flyers.size()));
+  inner_.crossing.fill_up();
 }
 
 void Neighbours::filter_within(Part& part) const {
@@ -297,65 +310,76 @@ void Neighbours::filter_crossing(Part& part, const std::array<Quad, 27>& shifts)
   }
 }
 
-/// One list of what all parts have found, in their order.
-void Neighbours::join(ThreadPool* team) {
+/// One list for what all parts have found, in their order, and the flyers.
+void Neighbours::make_room(std::size_t pairs_of_flyers) {
   GroupedPairs& within = inner_.within;
   within.reach = outer_.reach;
-  if (parts_.size() == 1) return;  // it has written into it
-  inner_.crossing.pairs.clear();
-  for (const Part& part : parts_)
-    inner_.crossing.pairs.insert(inner_.crossing.pairs.end(), part.crossing.begin(), part.crossing.end());
-  std::size_t groups = 0, partners = 0;
+  if (parts_.size() == 1) {
+    inner_.crossing.pairs.resize(inner_.crossing.pairs.size() + pairs_of_flyers);
+    return;
+  }
+  std::size_t groups = 0, partners = 0, crossing = 0;
   within.count = 0;
-  std::vector<std::size_t> group_begin, partner_begin;
-  for (const Part& part : parts_) {
-    group_begin.push_back(groups), partner_begin.push_back(partners);
+  for (Part& part : parts_) {
+    part.groups_before = groups, part.partners_before = partners, part.crossing_before = crossing;
     groups += part.within.groups.size(), partners += part.within.partner.size();
+    crossing += part.crossing.size();
     within.count += part.within.count;
   }
   within.groups.resize(groups);
   within.partner.resize(partners);
-  each(team, [&](const Part& part) {
-    const auto k = static_cast<std::size_t>(&part - parts_.data());
-    const auto before = static_cast<std::uint32_t>(partner_begin[k]);
-    std::copy(part.within.partner.begin(), part.within.partner.end(), within.partner.begin() + before);
-    auto* to = within.groups.data() + group_begin[k];
-    for (GroupedPairs::Group group : part.within.groups) {
-      group.first += before, group.last += before;
-      *to++ = group;
-    }
-  });
+  inner_.crossing.pairs.resize(crossing + pairs_of_flyers);
+}
+
+void Neighbours::join(const Part& part) {
+  const auto put = [](const auto& from, std::size_t before, auto& into) {
+    std::copy(from.begin(), from.end(), into.begin() + static_cast<std::ptrdiff_t>(before));
+  };
+  put(part.crossing, part.crossing_before, inner_.crossing.pairs);
+  put(part.within.partner, part.partners_before, inner_.within.partner);
+  const auto before = static_cast<std::uint32_t>(part.partners_before);
+  auto* to = inner_.within.groups.data() + part.groups_before;
+  for (GroupedPairs::Group group : part.within.groups) {
+    group.first += before, group.last += before;
+    *to++ = group;
+  }
+}
+
+void Neighbours::enclose_runs(const Part& part) {
+  static_assert(GroupedPairs::block % run_length == 0);  // no run lies in two parts
+  for (std::uint32_t i = part.first; i < part.last; ++i) {
+    if (i % run_length == 0) runs_[i / run_length] = {};
+    runs_[i / run_length].enclose(inner_reference_[i]);  // but flyers, which have no place yet
+  }
 }
 
 /// The pairs of the grains that fly, looked for among all grains and through all images in which one of them
 /// may lie near: in those runs of grains, as they are sorted in space, whose box is near enough.
-void Neighbours::list_flyers(const Quads& flying, const std::array<Quad, 27>& shifts) {
-  if (flying.empty()) return;
-  std::vector<Enclosure> runs((inner_reference_.size() + run_length - 1) / run_length);
+std::vector<CrossingPairs::Pair> Neighbours::pairs_of_flyers(const Quads& flying,
+                                                             const std::array<Quad, 27>& shifts) {
+  std::vector<CrossingPairs::Pair> found;
+  if (flying.empty()) return found;
   Enclosure all;
-  const auto enclose = [&](std::size_t i) {
-    runs[i / run_length].enclose(inner_reference_[i]);
-    all.enclose(inner_reference_[i]);
-  };
-  for (std::size_t i = 0; i < inner_reference_.size(); ++i)
-    enclose(i);  // but flyers, which have no place yet
+  for (const Enclosure& run : runs_) all.enclose(run);
   for (std::size_t k = 0; k < flying.size(); ++k) {
     const Quad& a = flying[k];
     for (std::uint32_t image = 0; image < shifts.size(); ++image) {
       const Quad& shift = shifts[image];
       const Quad at{a.x - shift.x, a.y - shift.y, a.z - shift.z, a.w};
       if (!all.may_be_near(at)) continue;
-      for (std::size_t run = 0; run < runs.size(); ++run) {
-        if (!runs[run].may_be_near(at)) continue;
+      for (std::size_t run = 0; run < runs_.size(); ++run) {
+        if (!runs_[run].may_be_near(at)) continue;
         const std::size_t last = std::min((run + 1) * run_length, inner_reference_.size());
         for (std::size_t j = run * run_length; j < last; ++j)
           if (near(a, inner_reference_[j], shift))
-            inner_.crossing.pairs.push_back({flyers_[k], static_cast<std::uint32_t>(j), image});
+            found.push_back({flyers_[k], static_cast<std::uint32_t>(j), image});
       }
     }
     inner_reference_[flyers_[k]] = a;  // so that the next flyers meet it
-    enclose(flyers_[k]);
+    runs_[flyers_[k] / run_length].enclose(a);
+    all.enclose(a);
   }
+  return found;
 }
 
 }  // namespace grainlaw::dem

@@ -42,6 +42,9 @@ class Neighbours {
   /// share what is done for each inner list, which comes out the same. Throws Error if the box is too narrow
   /// for a grain not to touch its own image, or if two grains lie at the same point.
   void update(Grains& grains, Cell& cell, double lookahead, ThreadPool* team = nullptr);
+  /// The same where the outer list need not be renewed, from place and motion of the grains alone; else it
+  /// returns false, and update() must follow.
+  bool update_inner(const Grains& grains, const Cell& cell, double lookahead, ThreadPool* team = nullptr);
 
   const Pairs& pairs() const { return inner_; }
   std::size_t outer_pairs() const { return outer_.count(); }
@@ -66,6 +69,16 @@ class Neighbours {
     std::vector<std::uint32_t> begin, near;     ///< the filtered pairs, grain by grain
     GroupedPairs within;                        ///< the same interleaved, where there is more than one part
     std::vector<CrossingPairs::Pair> crossing;  ///< likewise
+    std::size_t groups_before, partners_before, crossing_before;  ///< of the parts before this one
+  };
+  /// The box around the centres of some spheres, and the largest radius of them.
+  struct Enclosure {
+    double reach = 0;
+    Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+
+    void enclose(const Quad& b);
+    void enclose(const Enclosure& other);
+    bool may_be_near(const Quad& a) const;
   };
   void cut(std::size_t grains, ThreadPool* team);
   /// Calls f(part) for each, on a thread of its own.
@@ -74,19 +87,22 @@ class Neighbours {
 
   void make_budgets(const Grains& grains, double lookahead, ThreadPool* team);
   bool outer_covers(const Grains& grains, const Cell& cell, ThreadPool* team);
-  void list_flyers(const Quads& flying, const std::array<Quad, 27>& shifts);
+  void enclose_runs(const Part& part);
+  std::vector<CrossingPairs::Pair> pairs_of_flyers(const Quads& flying, const std::array<Quad, 27>& shifts);
   void sort_and_list(Grains& grains, Cell& cell);
   double outer_range() const { return 2 * largest_radius_ + outer_skin_; }
   void filter(const Grains& grains, const Cell& cell, ThreadPool* team);
   void filter_within(Part& part) const;
   void filter_crossing(Part& part, const std::array<Quad, 27>& shifts);
-  void join(ThreadPool* team);
+  void make_room(std::size_t pairs_of_flyers);
+  void join(const Part& part);
 
   double unit_, largest_radius_;
   double outer_skin_ = 0;
   NearPairs outer_;
   Pairs inner_;
   std::vector<Part> parts_;            ///< scratch, one for each thread
+  std::vector<Enclosure> runs_;        ///< scratch, of runs of grains
   std::vector<std::uint32_t> flyers_;  ///< whose pairs are looked for among all grains; rising
   std::vector<double> budget_;         ///< s_i, mm
   Quads inner_reference_;              ///< X | s_i^2, of the inner list

@@ -68,6 +68,15 @@ struct CrossingPairs {
   }
 };
 
+/// Pairs within the box, eight at a time, of which the forces on the second grain alone are wanted.
+struct HaloPairs {
+  static constexpr std::size_t width = 8;
+  struct Pair {
+    std::uint32_t i, j;
+  };
+  std::vector<Pair> pairs;  ///< those that fill up the last eight are of a grain with itself
+};
+
 /// Most pairs lie within the box and need no image; those that meet through a face of it are kept apart, with
 /// the image of j that i meets. So the loop over pairs never searches for the nearest image, and a small box
 /// may hold the same two grains twice, through different images.

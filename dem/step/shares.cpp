@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include "grainlaw/dem/step/forces.hpp"
@@ -18,40 +17,29 @@ std::array<std::size_t, 8> order_of_lanes(std::size_t lanes) {
                     : std::array<std::size_t, 8>{0, 1, 2, 3, 4, 5, 6, 7};
 }
 
-/// Pairs one after the other, each put into the lane in which its force is added when its turn comes.
-class InOrder {
- public:
-  InOrder(CrossingPairs& list, std::size_t lanes) : list_(list), order_(order_of_lanes(lanes)) {
-    list_.pairs.clear();
-    list_.count = 0;
-  }
-  void push(std::uint32_t i, std::uint32_t j) {
-    const std::size_t lane = list_.count % CrossingPairs::width;
-    if (lane == 0) list_.pairs.resize(list_.count + CrossingPairs::width, {0, 0, Cell::home_image});
-    list_.pairs[list_.count - lane + order_[lane]] = {i, j, Cell::home_image};
-    ++list_.count;
-  }
-
- private:
-  CrossingPairs& list_;
-  std::array<std::size_t, 8> order_;
-};
-
 /// The pairs of the groups from `first_group` to this share's whose partners lie in it, in the order in which
-/// the loop over the groups adds their forces: that through all groups, as many lanes at a time.
+/// the loop over the groups adds their forces: that through all groups, as many lanes at a time. Each lies in
+/// the lane in which its force is added when its turn comes.
 void deal_halo(const GroupedPairs& all, std::size_t first_group, std::size_t lanes, Share& share) {
   constexpr auto width = static_cast<std::uint32_t>(GroupedPairs::width);
+  share.halo = {};
+  if (first_group == share.first_group) return;
   const std::array<std::size_t, 8> order = order_of_lanes(lanes);
-  InOrder halo(share.halo, lanes);
+  std::vector<HaloPairs::Pair> found(all.groups[share.first_group - 1].last - all.groups[first_group].first +
+                                     1);
+  std::size_t n = 0;
   for (std::size_t g = first_group; g < share.first_group; ++g) {
     const GroupedPairs::Group& group = all.groups[g];
     for (std::size_t begin = 0; begin < width; begin += lanes)
       for (std::uint32_t row = group.first; row < group.last; row += width)
-        for (std::size_t n = begin; n < begin + lanes; ++n) {
-          const std::uint32_t j = all.partner[row + order[n]];
-          if (share.owns(j)) halo.push(group.grain[order[n]], j);
+        for (std::size_t lane = begin; lane < begin + lanes; ++lane) {
+          const std::uint32_t j = all.partner[row + order[lane]];
+          found[n] = {group.grain[order[lane]], j};  // kept or overwritten by the next one
+          n += share.owns(j) ? 1u : 0u;
         }
   }
+  share.halo.pairs.resize((n + width - 1) / width * width);
+  for (std::size_t k = 0; k < n; ++k) share.halo.pairs[k / width * width + order[k % width]] = found[k];
 }
 
 void deal_crossing(const CrossingPairs& all, Share& share) {
@@ -71,20 +59,22 @@ void deal_crossing(const CrossingPairs& all, Share& share) {
 
 /// Grains of other shares in its pairs; within the box, only groups from `first_group` on have any.
 void list_foreign(const GroupedPairs& all, std::size_t first_group, std::size_t grains, Share& share) {
-  constexpr std::uint32_t bits = 64;
-  std::vector<std::uint64_t> marked((grains + bits - 1) / bits);
-  const auto mark = [&](std::uint32_t i) {
-    if (!share.owns(i)) marked[i / bits] |= std::uint64_t{1} << i % bits;
-  };
-  for (const CrossingPairs* list : {&share.halo, &share.crossing})
-    for (const CrossingPairs::Pair& pair : list->pairs)
-      if (pair.i != pair.j) mark(pair.i), mark(pair.j);  // else it fills up a row
+  // Its own are marked, too, and pairs that fill up a row mark the one behind the last.
+  std::vector<unsigned char> marked(grains + 1);
+  for (const HaloPairs::Pair& pair : share.halo.pairs) marked[pair.i == pair.j ? grains : pair.i] = 1;
+  for (const CrossingPairs::Pair& pair : share.crossing.pairs) {
+    const bool fills_up = pair.i == pair.j;
+    marked[fills_up ? grains : pair.i] = marked[fills_up ? grains : pair.j] = 1;
+  }
   for (std::size_t g = first_group; g < share.last_group; ++g)
-    for (std::uint32_t p = all.groups[g].first; p < all.groups[g].last; ++p) mark(all.partner[p]);
+    for (std::uint32_t p = all.groups[g].first; p < all.groups[g].last; ++p) marked[all.partner[p]] = 1;
   share.foreign.clear();
-  for (std::uint32_t word = 0; word < marked.size(); ++word)
-    for (std::uint64_t left = marked[word]; left != 0; left &= left - 1)
-      share.foreign.push_back(word * bits + static_cast<std::uint32_t>(std::countr_zero(left)));
+  const auto add = [&](std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t i = first; i < last; ++i)
+      if (marked[i] != 0) share.foreign.push_back(i);
+  };
+  add(0, share.first);
+  add(share.last, static_cast<std::uint32_t>(grains));
 }
 
 }  // namespace
@@ -127,17 +117,42 @@ void Team::deal(const Pairs& pairs, const Grains& grains, bool moved) {
     share.grains.force = grains.force;
     share.grains.acceleration = grains.acceleration;
   });
-  each([&](std::size_t t) { send(t, box_); });
+  each([&](std::size_t t) {
+    find_listed(t);
+    send(t, box_);
+  });
+}
+
+void Team::find_listed(std::size_t from) {
+  Share& own = shares_[from];
+  own.listed.clear();
+  for (std::size_t t = 0; t < shares_.size(); ++t) {
+    const std::vector<std::uint32_t>& foreign = shares_[t].foreign;
+    const auto at = [&](std::uint32_t grain) {
+      return static_cast<std::size_t>(std::lower_bound(foreign.begin(), foreign.end(), grain) -
+                                      foreign.begin());
+    };
+    if (const Share::Listed some{t, at(own.first), at(own.last)}; some.first != some.last)
+      own.listed.push_back(some);
+  }
+}
+
+/// The memory that send() writes to.
+std::vector<std::span<std::byte>> Team::outboxes(std::size_t from, std::size_t box) {
+  std::vector<std::span<std::byte>> all;
+  for (const auto& [share, first, last] : shares_[from].listed)
+    all.push_back(std::as_writable_bytes(std::span(shares_[share].inbox[box]).subspan(first, last - first)));
+  return all;
 }
 
 /// Leaves what others need of its grains in their inboxes.
 void Team::send(std::size_t from, std::size_t box) {
   const Share& own = shares_[from];
-  for (Share& other : shares_) {
-    const auto begin = other.foreign.begin(), end = std::lower_bound(begin, other.foreign.end(), own.last);
-    for (auto i = std::lower_bound(begin, end, own.first); i != end; ++i) {
-      const Quad &x = own.grains.place[*i], &v = own.grains.motion[*i];
-      other.inbox[box][static_cast<std::size_t>(i - begin)] = {x.x, x.y, x.z, v.x, v.y, v.z};
+  for (const auto& [share, first, last] : own.listed) {
+    Share& other = shares_[share];
+    for (std::size_t k = first; k < last; ++k) {
+      const Quad &x = own.grains.place[other.foreign[k]], &v = own.grains.motion[other.foreign[k]];
+      other.inbox[box][k] = {x.x, x.y, x.z, v.x, v.y, v.z};
     }
   }
 }
@@ -154,11 +169,11 @@ void Team::take(Share& share) const {
 double Team::advance(const ContactLaw& law, const Pairs& pairs, const Cell& cell, const Stride& stride,
                      const ListReach& list) {
   std::vector<double> excess(shares_.size());
-  each([&](std::size_t t) {
+  each([=, this, &pairs, &excess](std::size_t t) {
     Share& share = shares_[t];
     if (due_) {
       take(share);
-      dem::add_contact_forces(law, pairs, cell, share);
+      dem::add_contact_forces(law, pairs, cell, share, outboxes(t, 1 - box_));
     }
     excess[t] = dem::advance(stride, list, share.first, share.last, share.grains);
     send(t, 1 - box_);
@@ -183,16 +198,18 @@ void Team::add_contact_forces(const ContactLaw& law, const Pairs& pairs, const C
 }
 
 void Team::gather(Grains& grains) const {
+  gather({&Grains::place, &Grains::motion, &Grains::half, &Grains::force, &Grains::acceleration}, grains);
+}
+
+void Team::gather_motion(Grains& grains) const { gather({&Grains::place, &Grains::motion}, grains); }
+
+void Team::gather(std::initializer_list<Quads Grains::*> fields, Grains& grains) const {
   each([&](std::size_t t) {
     const Share& share = shares_[t];
-    const auto take = [&](const Quads& from, Quads& to) {
-      std::copy(from.begin() + share.first, from.begin() + share.last, to.begin() + share.first);
-    };
-    take(share.grains.place, grains.place);
-    take(share.grains.motion, grains.motion);
-    take(share.grains.half, grains.half);
-    take(share.grains.force, grains.force);
-    take(share.grains.acceleration, grains.acceleration);
+    for (const auto field : fields) {
+      const Quads& from = share.grains.*field;
+      std::copy(from.begin() + share.first, from.begin() + share.last, (grains.*field).begin() + share.first);
+    }
   });
 }
 

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "grainlaw/dem/packing/grains.hpp"
@@ -14,26 +17,34 @@
 
 namespace grainlaw::dem {
 
+using Letter = std::array<double, 6>;  ///< place and motion of a grain, mm and mm/us
+
 /// What one thread does: a run of grains, and all the forces on them. Pairs with a grain of another share are
 /// computed on both sides, each for its own; so no two threads add to the same grain, and each grain's forces
 /// are added in the order in which one thread alone would add them.
 struct Share {
   std::uint32_t first = 0, last = 0;            ///< its grains
   std::size_t first_group = 0, last_group = 0;  ///< their groups in the list
-  CrossingPairs halo;                           ///< pairs of earlier groups with partners in here
+  HaloPairs halo;                               ///< pairs of earlier groups with partners in here
   CrossingPairs crossing;                       ///< those pairs that have a grain in here
   std::vector<std::uint32_t> foreign;           ///< grains of other shares in all of its pairs, rising
   Grains grains;  ///< right for its own, without id; of the foreign ones, place and motion are when forces
                   ///< are added
   /// Where each foreign grain is, and its motion, as the share that it belongs to left them; of this step and
   /// of the one before, which others may still read.
-  std::array<std::vector<std::array<double, 6>>, 2> inbox;
+  std::array<std::vector<Letter>, 2> inbox;
+  /// Which of the foreign grains of another share are its own.
+  struct Listed {
+    std::size_t share, first, last;
+  };
+  std::vector<Listed> listed;
 
-  bool owns(std::uint32_t grain) const { return grain >= first && grain < last; }
+  bool owns(std::uint32_t grain) const { return grain - first < last - first; }
 };
 
 /// Share `index` of `shares`, of `grains` grains, for loops that compute so many pairs at a time as `lanes`
-/// (4 or 8): in what order they add forces depends on it. Leaves the share's grains and inbox as they were.
+/// (4 or 8): in what order they add forces depends on it. Leaves the share's grains, its inbox and what
+/// others list of it as they were.
 void deal(const Pairs& pairs, std::size_t grains, std::size_t index, std::size_t shares, std::size_t lanes,
           Share& share);
 
@@ -60,12 +71,17 @@ class Team {
   void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell);
   /// All grains as the shares have them.
   void gather(Grains& grains) const;
+  /// Their place and motion alone.
+  void gather_motion(Grains& grains) const;
 
  private:
   template <class F>
   void each(F&& f) const {
-    pool_->run([&](int t) { f(static_cast<std::size_t>(t)); });
+    pool_->run([f](int t) { f(static_cast<std::size_t>(t)); });
   }
+  void gather(std::initializer_list<Quads Grains::*> fields, Grains& grains) const;
+  void find_listed(std::size_t from);
+  std::vector<std::span<std::byte>> outboxes(std::size_t from, std::size_t box);
   void send(std::size_t from, std::size_t box);
   void take(Share& share) const;
 

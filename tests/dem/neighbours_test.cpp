@@ -101,6 +101,27 @@ TEST(Neighbours, FewFlyingGrainsDoNotForceRebuilds) {
   EXPECT_LT(dynamics.neighbours().sorts(), 10u);  // it flew 9 mm, 25 times what the outer list allows
 }
 
+TEST(Neighbours, TheInnerListIsMadeOfPlacesAndMotionsAlone) {
+  const Material m;
+  Dynamics dynamics(m, test::squeezed(m, 400, 3, 0.7, 0.1));
+  Grains grains = dynamics.grains(), bare;
+  Cell cell = dynamics.cell();
+  Neighbours neighbours(m.r_mean, grains.largest_radius()), of_bare = neighbours;
+  bare.place = grains.place, bare.motion = grains.motion;
+  EXPECT_FALSE(of_bare.update_inner(bare, cell, 1));  // there is no outer list yet
+  EXPECT_EQ(of_bare.updates(), 0u);
+  neighbours.update(grains, cell, 1);
+  of_bare = neighbours;
+  for (Quad& x : grains.place) x.x += 0.02 * m.r_mean;
+  bare.place = grains.place, bare.motion = grains.motion;  // sorted by now
+  ASSERT_TRUE(of_bare.update_inner(bare, cell, 1));
+  neighbours.update(grains, cell, 1);
+  EXPECT_EQ(of_bare.sorts(), 1u);
+  EXPECT_EQ(of_bare.updates(), 2u);
+  EXPECT_EQ(of_bare.pairs().within.partner, neighbours.pairs().within.partner);
+  EXPECT_EQ(of_bare.pairs().crossing.count, neighbours.pairs().crossing.count);
+}
+
 TEST(Neighbours, RefusesABoxThatItsGrainsCannotFitIn) {
   const Material m;
   State state = test::two_grains(1.5, 1.5, 0);

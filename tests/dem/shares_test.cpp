@@ -184,6 +184,16 @@ TEST(ThreadPool, RunsEveryPartEachTime) {
   EXPECT_EQ(sum, (std::array<int, 3>{20100, 40200, 60300}));
 }
 
+TEST(ThreadPool, GivesEachThreadACopyOfItsOwn) {
+  ThreadPool team(3);
+  std::array<const double*, 3> at{};
+  team.run([&at, captured = 0.5](int t) {
+    EXPECT_EQ(captured, 0.5);
+    at[static_cast<std::size_t>(t)] = &captured;
+  });
+  EXPECT_TRUE(at[0] != at[1] && at[1] != at[2] && at[2] != at[0]);
+}
+
 TEST(ThreadPool, ThrowsWhatAPartThrewOnceAllHaveMet) {
   ThreadPool team(3);
   for (const int bad : {0, 2}) {
