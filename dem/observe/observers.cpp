@@ -68,8 +68,8 @@ std::vector<double> Observers::observe(const Dynamics& dynamics, const Quads& ve
                                        const SignConvention& sign, std::size_t segment, std::size_t row) {
   std::vector<double> values;
   if (list_.empty()) return values;
-  const Network network = walks_contacts_ ? Network::gather(dynamics, velocity) : Network{};
-  const View view{material, dynamics, velocity, measured, sign, segment, network};
+  if (walks_contacts_) network_.gather(dynamics, velocity);
+  const View view{material, dynamics, velocity, measured, sign, segment, network_};
   auto table = tables_.begin();
   for (Observer& any : list_)
     std::visit(

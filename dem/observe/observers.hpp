@@ -97,6 +97,7 @@ class Observers {
   std::vector<Table> tables_;  ///< of those that tabulate, in order
   bool walks_contacts_ = false;
   Wanted reads_;
+  Network network_;  ///< of the last row
 };
 
 }  // namespace grainlaw::dem::observe

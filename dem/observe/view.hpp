@@ -34,7 +34,8 @@ struct Network {
   double mean_force = undefined;           ///< over all contacts; undefined without any
   double mean_overlap = undefined;
 
-  static Network gather(const Dynamics& dynamics, const Quads& velocity);
+  /// Anew; it keeps its memory from one time to the next.
+  void gather(const Dynamics& dynamics, const Quads& velocity);
 };
 
 struct View {

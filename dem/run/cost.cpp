@@ -310,10 +310,10 @@ std::vector<State> run_from_beginning(const Scene& scene, const State& start, co
 
 /// What the path does all the time, and how often it looks, in grains that flow as it does.
 TrialCost try_flow(const Scene& scene, const State& flowing, const State& one_copy, const Stage& main,
-                   std::size_t grains, const CostOptions& options) {
+                   Whose whose, std::size_t grains, const CostOptions& options) {
   Trial trial(scene.material, flowing, main);
   trial.flow_in();
-  trial.steps();
+  trial.steps(whose);
   trial.rows(scene.measure.standard, scene.measure.observe);
   if (!scene.measure.snapshots.empty()) trial.snapshot();
   trial.checkpoint();
@@ -330,9 +330,12 @@ std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::
   for (const double place : places) {
     packing.compress_to(place);
     TrialPacking flowing = packing;
-    flowing.shear();
-    flowing.settle();
-    trials.push_back(try_flow(scene, flowing.state(), flowing.base(), main, grains, options));
+    if (!packing.is_own()) {
+      flowing.shear();
+      flowing.settle();
+    }
+    const Whose whose = packing.is_own() ? Whose::own : Whose::like;
+    trials.push_back(try_flow(scene, flowing.state(), flowing.base(), main, whose, grains, options));
     try_stages(scene, grains, flowing.base(), place, places, options, stages);
   }
   return trials;
@@ -355,6 +358,15 @@ double per_grain(const std::vector<TrialCost>& path, double TrialCost::*what) {
   return mean_of(path, [&](const TrialCost& t) { return t.*what; });
 }
 
+/// What is tried to tell of the path: a gas as the scene's, or the grains of its snapshot, and where these
+/// are many, others like them.
+TrialPacking path_trial(const Scene& scene, const State& start) {
+  if (const auto* packing = std::get_if<NewPacking>(&scene.preparation))
+    return {scene.material, start.count(), *packing};
+  if (is_laid_out(start.count())) return {scene.material, start.count(), NewPacking{}};
+  return {scene.material, start};
+}
+
 struct Trials {
   std::vector<TrialCost> prepared, path;
 };
@@ -365,11 +377,11 @@ Trials try_all(const Scene& scene, const State& start, const CostOptions& option
   tell_fast_stages(scene, start, options, stages);
   for (const State& seen : run_from_beginning(scene, start, options, stages))
     trials.path.push_back(
-        try_flow(scene, seen, seen, main_stage(stages, true).stage, start.count(), options));
+        try_flow(scene, seen, seen, main_stage(stages, true).stage, Whose::like, start.count(), options));
   if (!trials.path.empty()) return trials;
-  const auto* own = std::get_if<NewPacking>(&scene.preparation);
-  TrialPacking packing(scene.material, start.count(), own != nullptr ? *own : NewPacking{});
-  if (own != nullptr) trials.prepared = try_preparation(packing, scene.material, stages);
+  TrialPacking packing = path_trial(scene, start);
+  if (std::holds_alternative<NewPacking>(scene.preparation))
+    trials.prepared = try_preparation(packing, scene.material, stages);
   trials.path = try_path(packing, scene, start.count(), options, stages);
   return trials;
 }

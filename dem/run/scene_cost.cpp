@@ -47,8 +47,12 @@ double SceneCost::held_bytes() const {
   double sum = 0;
   for (const FieldCost& field : fields)
     if (!field.passing) sum += field.bytes_per_grain * static_cast<double>(grains);
-  for (const ObserverCost& observer : observers) sum += observer.kept_bytes;
-  return sum;
+  double network = 0;
+  for (const ObserverCost& observer : observers) {
+    sum += observer.kept_bytes;
+    network = std::max(network, observer.network_bytes);
+  }
+  return sum + network;
 }
 
 double SceneCost::passing_bytes() const {
@@ -60,12 +64,10 @@ double SceneCost::passing_bytes() const {
 
 /// Beside what is kept: one observer after the other looks at the same contacts.
 double SceneCost::bytes_of_a_row() const {
-  double network = 0, most = 0;
-  for (const ObserverCost& observer : observers) {
-    network = std::max(network, observer.network_bytes);
+  double most = 0;
+  for (const ObserverCost& observer : observers)
     most = std::max(most, observer.bytes - observer.kept_bytes - observer.network_bytes);
-  }
-  return network + most;
+  return most;
 }
 
 double SceneCost::bytes() const {

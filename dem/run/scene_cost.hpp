@@ -33,8 +33,8 @@ struct ObserverCost {
   std::string name;
   double seconds_per_row = 0;
   double bytes = 0;          ///< alone: all that it holds while a row is measured
-  double kept_bytes = 0;     ///< of these, from row to row, tables included
-  double network_bytes = 0;  ///< of these, the contacts, which observers share
+  double kept_bytes = 0;     ///< of these, by this one from row to row, tables included
+  double network_bytes = 0;  ///< of these, the contacts, which observers share and keep
 };
 
 struct SceneCost {

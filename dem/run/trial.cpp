@@ -20,12 +20,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double trial_seconds = 0.15;  // of steps, at each density
+constexpr double own_seconds = 1;       // of steps of the scene's own grains, whose flow has avalanches
 constexpr double shortest_way = 0.01;   // strain of a component, to and fro
 constexpr double longest_way = 0.3;     // at constant volume, if the leg goes so far
 constexpr double fast_step = 3e-6;      // strain of a step from which grains move otherwise than after a rest
 constexpr double flow_seconds = 0.4;    // at most, until the grains move as the flow makes them
-constexpr double moduli_seconds = 1;    // at each density, for states and the way from one to the next
+constexpr double moduli_seconds = 6;    // at each density, for states and the way from one to the next
 constexpr int fewest_states = 3, most_states = 12;
+constexpr double between_states = 0.3;      // s, at most: neighbours take about the same
+constexpr std::uint64_t steps_between = 5;  // rows
 constexpr std::uint64_t fewest_steps = 40, fewest_rows = 5, fewest_files = 3;
 
 double step_of(const Material& material, const State& state, const Stage& stage) {
@@ -138,9 +141,10 @@ void Trial::flow_in() {
   while (2 * steps_gone_ < steps_a_way_ && thread_seconds() - begin < flow_seconds) step();
 }
 
-void Trial::steps() {
+void Trial::steps(Whose whose) {
   for (std::uint64_t k = 0; k < fewest_steps / 4; ++k) step();
-  cost_.step = seconds_of([&] { step(); }, trial_seconds, fewest_steps) / grains_;
+  const double budget = whose == Whose::own ? own_seconds : trial_seconds;
+  cost_.step = seconds_of([&] { step(); }, budget, fewest_steps) / grains_;
   Grains copy = dynamics_.grains();
   const Pairs& pairs = dynamics_.neighbours().pairs();
   const auto force = [&](const ContactLaw& law) {
@@ -158,15 +162,16 @@ void Trial::steps() {
   cost_.pairs = static_cast<double>(pairs.count()) / grains_;
 }
 
-/// Seconds of a call after each step and what comes before it, as in a test that writes rows: with what it
-/// needs no longer in the nearest caches. What takes next to no time is not waited for.
+/// Seconds of a call after some steps and what comes before it, as in a test that writes rows: what it needs
+/// is no longer in the nearest caches, and it takes other ways through the contacts than the last time. What
+/// takes next to no time is not waited for.
 template <class Call, class Before>
 double Trial::seconds_between_steps(Call&& call, Before&& before) {
   const double first = thread_seconds();
   double spent = 0, end = first;
   std::uint64_t calls = 0;
   do {
-    step();
+    for (std::uint64_t k = 0; k < steps_between; ++k) step();
     before();
     const double begin = thread_seconds();
     call();
@@ -237,11 +242,13 @@ void Trial::checkpoint() {
 
 void Trial::moduli(const State& flowing, const Stage& stage, std::size_t grains) {
   Trial other(material_, flowing, stage);
+  const std::uint64_t apart = std::max(fewest_steps, stage.stepping.steps / most_states);
   const double begin = thread_seconds();
   int states = 0;
   ModuliCost all;
   while (states < fewest_states || (states < most_states && thread_seconds() - begin < moduli_seconds)) {
-    seconds_of([&] { other.step(); }, trial_seconds / 10, fewest_steps);
+    const double left = thread_seconds();
+    for (std::uint64_t k = 0; k < apart && thread_seconds() - left < between_states; ++k) other.step();
     const ModuliCost one = moduli_cost(material_, other.dynamics_.state(), grains);
     all.seconds += one.seconds;
     all.bytes = std::max(all.bytes, one.bytes);

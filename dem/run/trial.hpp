@@ -31,6 +31,9 @@ struct TrialCost {
 /// The largest component of a leg's strain, or its gamma.
 double largest_strain(const Leg& leg);
 
+/// The scene's own grains as a run finds them, or others like them.
+enum class Whose { own, like };
+
 class Trial {
  public:
   /// At the mean rate of `stage` and with its step; where that minimises, with a step of the default. The box
@@ -40,7 +43,7 @@ class Trial {
   /// What was brought to rest comes to move as a fast flow does, in 0.4 s at most: at rest, lists live
   /// longer.
   void flow_in();
-  void steps();
+  void steps(Whose whose = Whose::like);
   /// Of the columns of the groups `standard`, and of each observer, with what is measured for it beside
   /// these.
   void rows(const std::vector<std::string>& standard, const std::vector<std::string>& observers);

@@ -55,6 +55,12 @@ TrialPacking::TrialPacking(const Material& material, std::size_t count, const Ne
   step_ = time_step(material, *std::min_element(state_.radius.begin(), state_.radius.end()), trial_step);
 }
 
+TrialPacking::TrialPacking(const Material& material, const State& own)
+    : material_(material),
+      own_(true),
+      state_(own),
+      step_(time_step(material, *std::min_element(own.radius.begin(), own.radius.end()), trial_step)) {}
+
 void TrialPacking::compress_to(double nu) {
   const double strain = std::log(nu / state_.volume_fraction()) / 3;
   if (std::abs(strain) < 1e-4) return;
@@ -65,6 +71,7 @@ void TrialPacking::compress_to(double nu) {
 void TrialPacking::shear() { go(Mode::d2, {-0.01, 0.01, 0}, 6e-6); }
 
 void TrialPacking::settle() {
+  own_ = false;
   StaticPacking packing(material_, state_);
   MinimiseOptions options;
   options.residual = settled;
@@ -76,6 +83,7 @@ void TrialPacking::settle() {
 std::optional<LegCost> TrialPacking::run(const Stage& stage, double budget) {
   Dynamics dynamics(material_, state_);
   const std::optional<LegCost> cost = try_leg(dynamics, stage, budget);
+  own_ = false;
   state_ = dynamics.state();
   return cost;
 }
@@ -92,6 +100,7 @@ void TrialPacking::go(Mode mode, const StrainTensor& strain, double strain_per_s
   leg.tolerance = 1e-6;
   Dynamics dynamics(material_, state_);
   drive(dynamics, leg, plan_steps(leg, step_, 1));
+  own_ = false;
   state_ = dynamics.state();
 }
 

@@ -24,6 +24,11 @@ State laid_out(const State& one, std::size_t times);
 class TrialPacking {
  public:
   TrialPacking(const Material& material, std::size_t count, const NewPacking& like);
+  /// The scene's own grains, as a run finds them.
+  TrialPacking(const Material& material, const State& own);
+
+  /// Whether nothing has moved the scene's own grains so far.
+  bool is_own() const { return own_; }
 
   void compress_to(double nu);
   /// Into flow, with grains that rearrange.
@@ -43,6 +48,7 @@ class TrialPacking {
 
   Material material_;
   std::size_t times_ = 1;
+  bool own_ = false;
   State state_;
   double step_ = 0;
 };

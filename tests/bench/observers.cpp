@@ -275,7 +275,10 @@ void measure_round(const fs::path& snapshot, const fs::path& dir, std::uint64_t&
   for (const auto& [name, test] : options(snapshot)) {
     spent[name].push_back(seconds_to_run(test, dir));
     const bool told_by_trial = !dem::needs_trial(stage_of(test, dem::read_frame(snapshot, {})));
-    said[name].push_back(dem::cost_of(test, told_by_trial ? by_trial : dem::CostOptions{}).seconds());
+    const dem::SceneCost told = dem::cost_of(test, told_by_trial ? by_trial : dem::CostOptions{});
+    said[name].push_back(told.seconds());
+    said[name + ", least"].push_back(told.least());
+    said[name + ", most"].push_back(told.most());
   }
 }
 
@@ -314,7 +317,11 @@ void print(const Times& spent, const Times& said, std::uint64_t steps, const fs:
     std::printf("%-24s %.3f (%.3f-%.3f)\n", name.c_str(), share.middle, share.least, share.most);
   }
   std::printf("whole tests, each with one option:\n");
-  for (const auto& [name, test] : options(snapshot)) line(name, 1);
+  for (const auto& [name, test] : options(snapshot)) {
+    line(name, 1);
+    const double least = median(said.at(name + ", least")), most = median(said.at(name + ", most"));
+    if (least < most) std::printf("%-24s %12s explained as %.1f to %.1f s\n", "", "", least, most);
+  }
 }
 
 }  // namespace

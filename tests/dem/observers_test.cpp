@@ -171,6 +171,22 @@ TEST(Observers, OneContactIsWhollyUnbalanced) {
   EXPECT_TRUE(std::isnan(radius["overlap"][7]));
 }
 
+// The contacts of a row lie where those of the last one lay.
+TEST(Observers, NoContactOfTheLastRowIsSeenInTheNext) {
+  const State crystal = test::crystal(0.99, 0);
+  State apart = crystal;
+  for (double& radius : apart.radius) radius *= 0.9;
+  for (const std::string& name : observe::names()) {
+    if (name == "nonaffine") continue;  // it looks back
+    SCOPED_TRACE(name);
+    Observers used({name}), fresh({name});
+    see(used, elastic(), crystal);
+    const auto after = see(used, elastic(), apart), alone = see(fresh, elastic(), apart);
+    for (const auto& [column, value] : alone)
+      EXPECT_TRUE(after.at(column) == value || (std::isnan(value) && std::isnan(after.at(column)))) << column;
+  }
+}
+
 TEST(Observers, RadiusAgainstContactsByBruteForce) {
   const Material m = elastic();
   const State state = test::squeezed(m, 300, 31, 0.75);
