@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <exception>
 #include <thread>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -35,7 +34,7 @@ class ThreadPool {
 
   /// Calls f(0) ... f(threads - 1), each on a thread of its own, and returns when all have. Throws what one
   /// of them has thrown, then. Each thread calls a copy of f: so what f has captured by value lies on no line
-  /// of memory that another thread writes to.
+  /// of memory that another thread writes to. f must be copyable, and callable where it is const.
   template <class F>
   void run(const F& f) {
     start(&call<F>, &f);

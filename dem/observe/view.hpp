@@ -34,7 +34,7 @@ struct Network {
   double mean_force = undefined;           ///< over all contacts; undefined without any
   double mean_overlap = undefined;
 
-  /// Anew; it keeps its memory from one time to the next.
+  /// Replaces what was gathered before, in the same memory.
   void gather(const Dynamics& dynamics, const Quads& velocity);
 };
 

@@ -11,6 +11,8 @@
 #include "grainlaw/dem/files/snapshot.hpp"
 #include "grainlaw/dem/numbers/random.hpp"
 #include "grainlaw/dem/observe/observers.hpp"
+#include "grainlaw/dem/packing/cell.hpp"
+#include "grainlaw/dem/packing/least_width.hpp"
 #include "grainlaw/dem/packing/size_distribution.hpp"
 #include "grainlaw/dem/run/fast_trial.hpp"
 #include "grainlaw/dem/run/leg_trial.hpp"
@@ -150,17 +152,20 @@ std::vector<TrialCost> try_preparation(TrialPacking& packing, const Material& ma
 
 constexpr double same_density = 0.01;  // of volume fractions for which one trial stands
 
-/// The densities between which the path goes.
+/// The densities between which the path goes; that at which it begins, where they are about the same.
 std::vector<double> densities(const std::vector<StageCost>& stages) {
   double low = 1, high = 0;
-  for (const StageCost& cost : stages)
-    if (cost.stage.segment)
-      for (const double nu : cost.nu) {
-        low = std::min(low, nu);
-        high = std::max(high, nu);
-      }
+  std::optional<double> first;
+  for (const StageCost& cost : stages) {
+    if (!cost.stage.segment) continue;
+    if (!first) first = cost.nu[0];
+    for (const double nu : cost.nu) {
+      low = std::min(low, nu);
+      high = std::max(high, nu);
+    }
+  }
   if (high - low > same_density) return {low, high};
-  return {low};
+  return {first.value()};
 }
 
 double nearest(double nu, const std::vector<double>& places) {
@@ -248,11 +253,24 @@ class Extremes {
   std::vector<State> states_;
 };
 
+constexpr double widest_trial = 0.31;  // strain that a trial may add to a box, its way and a little
+
+/// A gas like the scene's, or the grains of its snapshot; others like these where they are many, or their box
+/// is so narrow that a trial could not strain it as it likes.
+TrialPacking trial_packing(const Scene& scene, const State& start) {
+  if (const auto* packing = std::get_if<NewPacking>(&scene.preparation))
+    return {scene.material, start.count(), *packing};
+  const double largest = *std::max_element(start.radius.begin(), start.radius.end());
+  const bool narrow =
+      Cell(start.box).narrowest() < std::exp(widest_trial) * least_width(largest, scene.material.r_mean);
+  if (narrow || is_laid_out(start.count())) return {scene.material, start.count(), NewPacking{}};
+  return {scene.material, start};
+}
+
 /// A packing like the scene's, as a run finds it: a gas, or at rest where it begins.
 TrialPacking first_trial(const Scene& scene, const State& start) {
-  if (const auto* own = std::get_if<NewPacking>(&scene.preparation))
-    return {scene.material, start.count(), *own};
-  TrialPacking packing(scene.material, start.count(), NewPacking{});
+  TrialPacking packing = trial_packing(scene, start);
+  if (std::holds_alternative<NewPacking>(scene.preparation)) return packing;
   packing.compress_to(start.volume_fraction());
   packing.settle();
   return packing;
@@ -308,34 +326,45 @@ std::vector<State> run_from_beginning(const Scene& scene, const State& start, co
   return seen.take();
 }
 
-/// What the path does all the time, and how often it looks, in grains that flow as it does.
+/// What the path does all the time, and how often it looks, in grains that flow as it does, or begin to.
 TrialCost try_flow(const Scene& scene, const State& flowing, const State& one_copy, const Stage& main,
-                   Whose whose, std::size_t grains, const CostOptions& options) {
+                   double seconds_of_steps, std::size_t grains, const CostOptions& options) {
   Trial trial(scene.material, flowing, main);
   trial.flow_in();
-  trial.steps(whose);
+  trial.steps(seconds_of_steps);
   trial.rows(scene.measure.standard, scene.measure.observe);
   if (!scene.measure.snapshots.empty()) trial.snapshot();
   trial.checkpoint();
   if (options.threads > 1) trial.threads(options.threads);
-  if (!scene.measure.moduli.empty()) trial.moduli(one_copy, main, grains);
+  if (const std::size_t states = scene.measure.moduli.size(); states > 0)
+    trial.moduli(one_copy, main, grains, states);
   return trial.cost();
 }
 
-std::vector<TrialCost> try_path(TrialPacking& packing, const Scene& scene, std::size_t grains,
+bool any_waits_for_trial(const std::vector<StageCost>& stages) {
+  return std::any_of(stages.begin(), stages.end(), [](const StageCost& cost) {
+    return cost.stage.segment && needs_trial(cost.stage) && !cost.tried;
+  });
+}
+
+std::vector<TrialCost> try_path(TrialPacking packing, const Scene& scene, std::size_t grains,
                                 const CostOptions& options, std::vector<StageCost>& stages) {
   const std::vector<double> places = densities(stages);
   const Stage main = main_stage(stages, true).stage;
+  const TrialPacking first = packing;
   std::vector<TrialCost> trials;
   for (const double place : places) {
+    if (first.is_own()) packing = first;
     packing.compress_to(place);
+    const bool own = packing.is_own();
     TrialPacking flowing = packing;
-    if (!packing.is_own()) {
+    if (!own || any_waits_for_trial(stages)) {
       flowing.shear();
       flowing.settle();
     }
-    const Whose whose = packing.is_own() ? Whose::own : Whose::like;
-    trials.push_back(try_flow(scene, flowing.state(), flowing.base(), main, whose, grains, options));
+    const TrialPacking& tried = own ? packing : flowing;
+    trials.push_back(
+        try_flow(scene, tried.state(), tried.base(), main, own ? own_steps : usual_steps, grains, options));
     try_stages(scene, grains, flowing.base(), place, places, options, stages);
   }
   return trials;
@@ -358,15 +387,6 @@ double per_grain(const std::vector<TrialCost>& path, double TrialCost::*what) {
   return mean_of(path, [&](const TrialCost& t) { return t.*what; });
 }
 
-/// What is tried to tell of the path: a gas as the scene's, or the grains of its snapshot, and where these
-/// are many, others like them.
-TrialPacking path_trial(const Scene& scene, const State& start) {
-  if (const auto* packing = std::get_if<NewPacking>(&scene.preparation))
-    return {scene.material, start.count(), *packing};
-  if (is_laid_out(start.count())) return {scene.material, start.count(), NewPacking{}};
-  return {scene.material, start};
-}
-
 struct Trials {
   std::vector<TrialCost> prepared, path;
 };
@@ -377,9 +397,9 @@ Trials try_all(const Scene& scene, const State& start, const CostOptions& option
   tell_fast_stages(scene, start, options, stages);
   for (const State& seen : run_from_beginning(scene, start, options, stages))
     trials.path.push_back(
-        try_flow(scene, seen, seen, main_stage(stages, true).stage, Whose::like, start.count(), options));
+        try_flow(scene, seen, seen, main_stage(stages, true).stage, usual_steps, start.count(), options));
   if (!trials.path.empty()) return trials;
-  TrialPacking packing = path_trial(scene, start);
+  TrialPacking packing = trial_packing(scene, start);
   if (std::holds_alternative<NewPacking>(scene.preparation))
     trials.prepared = try_preparation(packing, scene.material, stages);
   trials.path = try_path(packing, scene, start.count(), options, stages);
@@ -444,9 +464,10 @@ void take_stages(const Trials& trials, std::vector<StageCost> stages, SceneCost&
 
 void take_observers(const Scene& scene, const std::vector<TrialCost>& path, SceneCost& cost) {
   const double grains = static_cast<double>(cost.grains);
+  double contacts = 0;  // the most: their memory is kept
+  for (const TrialCost& trial : path) contacts = std::max(contacts, trial.contacts);
   for (std::size_t k = 0; k < scene.measure.observe.size(); ++k) {
-    ObserverCost one =
-        memory_of(scene.measure.observe[k], grains, grains * cost.contacts_per_grain, cost.rows);
+    ObserverCost one = memory_of(scene.measure.observe[k], grains, grains * contacts, cost.rows);
     one.seconds_per_row = grains * mean_of(path, [&](const auto& t) { return t.observers[k]; });
     cost.observers.push_back(one);
   }

@@ -19,15 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double trial_seconds = 0.15;  // of steps, at each density
-constexpr double own_seconds = 1;       // of steps of the scene's own grains, whose flow has avalanches
+constexpr double trial_seconds = 0.15;  // of rows and files
 constexpr double shortest_way = 0.01;   // strain of a component, to and fro
 constexpr double longest_way = 0.3;     // at constant volume, if the leg goes so far
 constexpr double fast_step = 3e-6;      // strain of a step from which grains move otherwise than after a rest
 constexpr double flow_seconds = 0.4;    // at most, until the grains move as the flow makes them
 constexpr double moduli_seconds = 6;    // at each density, for states and the way from one to the next
-constexpr int fewest_states = 3, most_states = 12;
-constexpr double between_states = 0.3;      // s, at most: neighbours take about the same
+constexpr double between_states = 0.3;  // s, at most, from one state to the next
+constexpr std::size_t fewest_states = 3, most_states = 12;
 constexpr std::uint64_t steps_between = 5;  // rows
 constexpr std::uint64_t fewest_steps = 40, fewest_rows = 5, fewest_files = 3;
 
@@ -141,10 +140,9 @@ void Trial::flow_in() {
   while (2 * steps_gone_ < steps_a_way_ && thread_seconds() - begin < flow_seconds) step();
 }
 
-void Trial::steps(Whose whose) {
+void Trial::steps(double seconds) {
   for (std::uint64_t k = 0; k < fewest_steps / 4; ++k) step();
-  const double budget = whose == Whose::own ? own_seconds : trial_seconds;
-  cost_.step = seconds_of([&] { step(); }, budget, fewest_steps) / grains_;
+  cost_.step = seconds_of([&] { step(); }, seconds, fewest_steps) / grains_;
   Grains copy = dynamics_.grains();
   const Pairs& pairs = dynamics_.neighbours().pairs();
   const auto force = [&](const ContactLaw& law) {
@@ -163,8 +161,8 @@ void Trial::steps(Whose whose) {
 }
 
 /// Seconds of a call after some steps and what comes before it, as in a test that writes rows: what it needs
-/// is no longer in the nearest caches, and it takes other ways through the contacts than the last time. What
-/// takes next to no time is not waited for.
+/// is no longer in the nearest caches, nor how the last one went in the processor's prediction of branches.
+/// What takes next to no time is not waited for.
 template <class Call, class Before>
 double Trial::seconds_between_steps(Call&& call, Before&& before) {
   const double first = thread_seconds();
@@ -240,13 +238,14 @@ void Trial::checkpoint() {
   cost_.checkpoint_bytes = static_cast<double>(fs::file_size(file)) / grains_;
 }
 
-void Trial::moduli(const State& flowing, const Stage& stage, std::size_t grains) {
+void Trial::moduli(const State& flowing, const Stage& stage, std::size_t grains, std::size_t asked) {
   Trial other(material_, flowing, stage);
-  const std::uint64_t apart = std::max(fewest_steps, stage.stepping.steps / most_states);
+  const std::uint64_t apart = std::max(fewest_steps, other.steps_a_way_ / most_states);
+  const std::size_t enough = std::clamp(asked, fewest_states, most_states);
   const double begin = thread_seconds();
-  int states = 0;
+  std::size_t states = 0;
   ModuliCost all;
-  while (states < fewest_states || (states < most_states && thread_seconds() - begin < moduli_seconds)) {
+  while (states < fewest_states || (states < enough && thread_seconds() - begin < moduli_seconds)) {
     const double left = thread_seconds();
     for (std::uint64_t k = 0; k < apart && thread_seconds() - left < between_states; ++k) other.step();
     const ModuliCost one = moduli_cost(material_, other.dynamics_.state(), grains);
@@ -254,7 +253,7 @@ void Trial::moduli(const State& flowing, const Stage& stage, std::size_t grains)
     all.bytes = std::max(all.bytes, one.bytes);
     ++states;
   }
-  cost_.moduli = {all.seconds / states, all.bytes};
+  cost_.moduli = {all.seconds / static_cast<double>(states), all.bytes};
 }
 
 }  // namespace grainlaw::dem

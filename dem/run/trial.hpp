@@ -31,8 +31,8 @@ struct TrialCost {
 /// The largest component of a leg's strain, or its gamma.
 double largest_strain(const Leg& leg);
 
-/// The scene's own grains as a run finds them, or others like them.
-enum class Whose { own, like };
+constexpr double usual_steps = 0.15;  ///< s, of steps at each density
+constexpr double own_steps = 1;       ///< s, of grains as the run finds them: their flow is the run's own
 
 class Trial {
  public:
@@ -43,7 +43,7 @@ class Trial {
   /// What was brought to rest comes to move as a fast flow does, in 0.4 s at most: at rest, lists live
   /// longer.
   void flow_in();
-  void steps(Whose whose = Whose::like);
+  void steps(double seconds = usual_steps);
   /// Of the columns of the groups `standard`, and of each observer, with what is measured for it beside
   /// these.
   void rows(const std::vector<std::string>& standard, const std::vector<std::string>& observers);
@@ -51,9 +51,9 @@ class Trial {
   void threads(int threads);
   void snapshot();
   void checkpoint();
-  /// Of a state of `grains` grains, the mean over some that `flowing` ones go through in `stage`: few take
-  /// much longer than most.
-  void moduli(const State& flowing, const Stage& stage, std::size_t grains);
+  /// Of a state of `grains` grains, the mean over some that `flowing` ones go through in `stage`, no more
+  /// than are `asked` for, or three: few take much longer than most.
+  void moduli(const State& flowing, const Stage& stage, std::size_t grains, std::size_t asked);
   const TrialCost& cost() const { return cost_; }
   /// Where box and grains are now.
   const Dynamics& dynamics() const { return dynamics_; }

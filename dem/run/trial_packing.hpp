@@ -1,4 +1,4 @@
-// A packing like that of a scene, made in seconds: what steps and rows cost is measured in it.
+// The packing of a scene, or one like it that is made in seconds: what steps and rows cost is measured in it.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,8 @@ bool is_laid_out(std::size_t count);
 /// A packing beside itself, `times` along each edge of its box.
 State laid_out(const State& one, std::size_t times);
 
-/// A packing like the scene's, made much faster than a real one: only what its neighbourhoods cost matters.
+/// The scene's own grains, or others like them, which are made and moved much faster than real ones: only
+/// what their neighbourhoods cost matters.
 class TrialPacking {
  public:
   TrialPacking(const Material& material, std::size_t count, const NewPacking& like);

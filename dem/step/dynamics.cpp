@@ -109,7 +109,7 @@ void Dynamics::update_list(double lookahead) {
   const bool sorted = !neighbours_.update_inner(grains_, cell_, lookahead, &team_->pool());
   if (sorted) {
     if (behind_) team_->gather(grains_);
-    neighbours_.update(grains_, cell_, lookahead, &team_->pool());
+    neighbours_.renew(grains_, cell_, lookahead, &team_->pool());
   }
   team_->deal(neighbours_.pairs(), grains_, sorted);
 }

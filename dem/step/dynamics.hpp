@@ -109,7 +109,8 @@ class Dynamics {
   Material material_;
   ContactLaw law_;
   Cell cell_;
-  mutable Grains grains_;  ///< of several threads, as they were when somebody last looked
+  mutable Grains grains_;  ///< of several threads, as they were when somebody last looked; place and motion
+                           ///< as they were when the list was made, if that is later
   Neighbours neighbours_;
   double dt_ = 0;
   double time_;

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 #include "grainlaw/dem/numbers/simd_targets.hpp"
@@ -128,12 +129,14 @@ class Frontier {
   std::size_t fetched_ = 0;
 };
 
-/// Takes a line of the cache from all other cores, to write into it.
-HWY_INLINE void fetch_to_write(const std::byte* line) {
+/// Takes a line of the cache from all other cores, to write into it. What compilers make of a prefetch for
+/// writing only reads, on most targets; where a processor does not know this one, it does nothing.
+HWY_INLINE void fetch_to_write(std::uintptr_t line) {
+  const auto* const byte = reinterpret_cast<const std::byte*>(line);
 #if HWY_ARCH_X86
-  asm volatile("prefetchw %0" : : "m"(*line));  // __builtin_prefetch(line, 1) only reads, on most targets
+  asm volatile("prefetchw %0" : : "m"(*byte));
 #else
-  __builtin_prefetch(line, 1);
+  __builtin_prefetch(byte, 1);
 #endif
 }
 
@@ -142,26 +145,32 @@ class WrittenSoon {
  public:
   WrittenSoon(std::span<const std::span<std::byte>> parts, std::size_t groups) : parts_(parts) {
     std::size_t lines = 0;
-    for (const std::span<std::byte> part : parts) lines += part.size() / line + 1;
+    for (const std::span<std::byte> part : parts) lines += part.size() / line + 2;
     at_once_ = lines / groups + 1;
+    begin_part();
   }
   template <Motion>
   HWY_INLINE void fetch(const GroupedPairs::Group&, const Groups&, const Quad*, const Quad*, const Quad*) {
     for (std::size_t n = 0; n < at_once_ && !parts_.empty(); ++n) {
-      if (at_ < parts_.front().size()) {
-        fetch_to_write(&parts_.front()[at_]);
-        at_ += line;
-      } else {
-        parts_ = parts_.subspan(1);
-        at_ = 0;
-      }
+      fetch_to_write(at_);
+      at_ += line;
+      if (at_ < end_) continue;
+      parts_ = parts_.subspan(1);
+      begin_part();
     }
   }
 
  private:
   static constexpr std::size_t line = 64;
+  void begin_part() {
+    if (parts_.empty()) return;
+    const auto begin = reinterpret_cast<std::uintptr_t>(parts_.front().data());
+    at_ = begin / line * line, end_ = begin + parts_.front().size();
+  }
+
   std::span<const std::span<std::byte>> parts_;
-  std::size_t at_ = 0, at_once_;
+  std::uintptr_t at_ = 0, end_ = 0;  ///< of the first part
+  std::size_t at_once_;
 };
 
 struct NothingAhead {

@@ -22,7 +22,8 @@ void contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell,
 /// Adds them to what grains.force holds, which advance() leaves at zero.
 void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Grains& grains);
 /// The same for the grains of a share, to the last bit. What it adds to the foreign ones among share.grains
-/// means nothing. Meanwhile it takes memory that will be written soon into this core's cache, out of others'.
+/// means nothing. Meanwhile, where the grains lie in a cache, it takes memory that will be written soon into
+/// this core's, out of others'.
 void add_contact_forces(const ContactLaw& law, const Pairs& pairs, const Cell& cell, Share& share,
                         std::span<const std::span<std::byte>> written_soon = {});
 

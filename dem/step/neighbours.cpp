@@ -139,7 +139,10 @@ void Neighbours::each(ThreadPool* team, F&& f) {
 }
 
 void Neighbours::update(Grains& grains, Cell& cell, double lookahead, ThreadPool* team) {
-  if (update_inner(grains, cell, lookahead, team)) return;
+  if (!update_inner(grains, cell, lookahead, team)) renew(grains, cell, lookahead, team);
+}
+
+void Neighbours::renew(Grains& grains, Cell& cell, double lookahead, ThreadPool* team) {
   sort_and_list(grains, cell);
   if (update_inner(grains, cell, lookahead, team)) return;
   // Too narrow a box for flyers.
@@ -267,7 +270,7 @@ void Neighbours::filter(const Grains& grains, const Cell& cell, ThreadPool* team
   }
   const std::array<Quad, 27> shifts = cell.shifts();
   runs_.resize(flying.empty() ? 0 : (grains.count() + run_length - 1) / run_length);
-  each(team, [this, &shifts, anyone_flies = !flying.empty()](Part& part) {
+  each(team, [this, shifts, anyone_flies = !flying.empty()](Part& part) {
     filter_within(part);
     group({part.first, part.begin, part.near}, part.last, parts_.size() == 1 ? inner_.within : part.within);
     filter_crossing(part, shifts);
@@ -310,12 +313,12 @@ void Neighbours::filter_crossing(Part& part, const std::array<Quad, 27>& shifts)
   }
 }
 
-/// One list for what all parts have found, in their order, and the flyers.
-void Neighbours::make_room(std::size_t pairs_of_flyers) {
+/// Makes room in the list for what all parts have found, in their order, and then the pairs of flyers.
+void Neighbours::make_room(std::size_t of_flyers) {
   GroupedPairs& within = inner_.within;
   within.reach = outer_.reach;
   if (parts_.size() == 1) {
-    inner_.crossing.pairs.resize(inner_.crossing.pairs.size() + pairs_of_flyers);
+    inner_.crossing.pairs.resize(inner_.crossing.pairs.size() + of_flyers);
     return;
   }
   std::size_t groups = 0, partners = 0, crossing = 0;
@@ -328,7 +331,7 @@ void Neighbours::make_room(std::size_t pairs_of_flyers) {
   }
   within.groups.resize(groups);
   within.partner.resize(partners);
-  inner_.crossing.pairs.resize(crossing + pairs_of_flyers);
+  inner_.crossing.pairs.resize(crossing + of_flyers);
 }
 
 void Neighbours::join(const Part& part) {
@@ -349,7 +352,7 @@ void Neighbours::enclose_runs(const Part& part) {
   static_assert(GroupedPairs::block % run_length == 0);  // no run lies in two parts
   for (std::uint32_t i = part.first; i < part.last; ++i) {
     if (i % run_length == 0) runs_[i / run_length] = {};
-    runs_[i / run_length].enclose(inner_reference_[i]);  // but flyers, which have no place yet
+    runs_[i / run_length].enclose(inner_reference_[i]);  // of flyers, which have no x yet, y, z and reach
   }
 }
 

@@ -43,8 +43,10 @@ class Neighbours {
   /// for a grain not to touch its own image, or if two grains lie at the same point.
   void update(Grains& grains, Cell& cell, double lookahead, ThreadPool* team = nullptr);
   /// The same where the outer list need not be renewed, from place and motion of the grains alone; else it
-  /// returns false, and update() must follow.
+  /// returns false, and renew() must follow.
   bool update_inner(const Grains& grains, const Cell& cell, double lookahead, ThreadPool* team = nullptr);
+  /// As update(), where it is known that the outer list must be renewed.
+  void renew(Grains& grains, Cell& cell, double lookahead, ThreadPool* team = nullptr);
 
   const Pairs& pairs() const { return inner_; }
   std::size_t outer_pairs() const { return outer_.count(); }
@@ -69,7 +71,7 @@ class Neighbours {
     std::vector<std::uint32_t> begin, near;     ///< the filtered pairs, grain by grain
     GroupedPairs within;                        ///< the same interleaved, where there is more than one part
     std::vector<CrossingPairs::Pair> crossing;  ///< likewise
-    std::size_t groups_before, partners_before, crossing_before;  ///< of the parts before this one
+    std::size_t groups_before = 0, partners_before = 0, crossing_before = 0;  ///< of the parts before it
   };
   /// The box around the centres of some spheres, and the largest radius of them.
   struct Enclosure {
@@ -94,7 +96,7 @@ class Neighbours {
   void filter(const Grains& grains, const Cell& cell, ThreadPool* team);
   void filter_within(Part& part) const;
   void filter_crossing(Part& part, const std::array<Quad, 27>& shifts);
-  void make_room(std::size_t pairs_of_flyers);
+  void make_room(std::size_t of_flyers);
   void join(const Part& part);
 
   double unit_, largest_radius_;

@@ -22,11 +22,10 @@ std::array<std::size_t, 8> order_of_lanes(std::size_t lanes) {
 /// the lane in which its force is added when its turn comes.
 void deal_halo(const GroupedPairs& all, std::size_t first_group, std::size_t lanes, Share& share) {
   constexpr auto width = static_cast<std::uint32_t>(GroupedPairs::width);
-  share.halo = {};
+  share.halo.pairs.clear();
   if (first_group == share.first_group) return;
   const std::array<std::size_t, 8> order = order_of_lanes(lanes);
-  std::vector<HaloPairs::Pair> found(all.groups[share.first_group - 1].last - all.groups[first_group].first +
-                                     1);
+  std::vector<HaloPairs::Pair> found(all.groups[share.first_group - 1].last - all.groups[first_group].first);
   std::size_t n = 0;
   for (std::size_t g = first_group; g < share.first_group; ++g) {
     const GroupedPairs::Group& group = all.groups[g];
@@ -138,11 +137,13 @@ void Team::find_listed(std::size_t from) {
 }
 
 /// The memory that send() writes to.
-std::vector<std::span<std::byte>> Team::outboxes(std::size_t from, std::size_t box) {
-  std::vector<std::span<std::byte>> all;
-  for (const auto& [share, first, last] : shares_[from].listed)
-    all.push_back(std::as_writable_bytes(std::span(shares_[share].inbox[box]).subspan(first, last - first)));
-  return all;
+std::span<const std::span<std::byte>> Team::outbox(std::size_t from, std::size_t box) {
+  Share& own = shares_[from];
+  own.outbox.clear();
+  for (const auto& [share, first, last] : own.listed)
+    own.outbox.push_back(
+        std::as_writable_bytes(std::span(shares_[share].inbox[box]).subspan(first, last - first)));
+  return own.outbox;
 }
 
 /// Leaves what others need of its grains in their inboxes.
@@ -169,13 +170,13 @@ void Team::take(Share& share) const {
 double Team::advance(const ContactLaw& law, const Pairs& pairs, const Cell& cell, const Stride& stride,
                      const ListReach& list) {
   std::vector<double> excess(shares_.size());
-  each([=, this, &pairs, &excess](std::size_t t) {
+  each([=, this, &pairs, of_each = excess.data()](std::size_t t) {
     Share& share = shares_[t];
     if (due_) {
       take(share);
-      dem::add_contact_forces(law, pairs, cell, share, outboxes(t, 1 - box_));
+      dem::add_contact_forces(law, pairs, cell, share, outbox(t, 1 - box_));
     }
-    excess[t] = dem::advance(stride, list, share.first, share.last, share.grains);
+    of_each[t] = dem::advance(stride, list, share.first, share.last, share.grains);
     send(t, 1 - box_);
   });
   box_ = 1 - box_;

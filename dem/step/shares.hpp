@@ -17,8 +17,6 @@
 
 namespace grainlaw::dem {
 
-using Letter = std::array<double, 6>;  ///< place and motion of a grain, mm and mm/us
-
 /// What one thread does: a run of grains, and all the forces on them. Pairs with a grain of another share are
 /// computed on both sides, each for its own; so no two threads add to the same grain, and each grain's forces
 /// are added in the order in which one thread alone would add them.
@@ -30,14 +28,16 @@ struct Share {
   std::vector<std::uint32_t> foreign;           ///< grains of other shares in all of its pairs, rising
   Grains grains;  ///< right for its own, without id; of the foreign ones, place and motion are when forces
                   ///< are added
+  using Letter = std::array<double, 6>;  ///< place and motion of a grain, mm and mm/us
   /// Where each foreign grain is, and its motion, as the share that it belongs to left them; of this step and
   /// of the one before, which others may still read.
   std::array<std::vector<Letter>, 2> inbox;
-  /// Which of the foreign grains of another share are its own.
+  /// Its own among the foreign grains of another share: numbers first ... last - 1 of that one's `foreign`.
   struct Listed {
     std::size_t share, first, last;
   };
   std::vector<Listed> listed;
+  std::vector<std::span<std::byte>> outbox;  ///< scratch: where it leaves these next
 
   bool owns(std::uint32_t grain) const { return grain - first < last - first; }
 };
@@ -81,7 +81,7 @@ class Team {
   }
   void gather(std::initializer_list<Quads Grains::*> fields, Grains& grains) const;
   void find_listed(std::size_t from);
-  std::vector<std::span<std::byte>> outboxes(std::size_t from, std::size_t box);
+  std::span<const std::span<std::byte>> outbox(std::size_t from, std::size_t box);
   void send(std::size_t from, std::size_t box);
   void take(Share& share) const;
 

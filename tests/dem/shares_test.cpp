@@ -28,6 +28,7 @@ struct Flow {
   State end;
   Pairs pairs;
   std::size_t flights = 0;  ///< how often a grain was looked for among all others
+  std::uint64_t updates = 0, sorts = 0;
 };
 
 /// A jammed packing under D2 with grains that fly about, lists and order of grains made anew many times.
@@ -51,6 +52,8 @@ Flow flow(int threads) {
   }
   EXPECT_GT(dynamics.neighbours().updates(), 20u);
   EXPECT_GT(dynamics.neighbours().sorts(), 2u);
+  flow.updates = dynamics.neighbours().updates();
+  flow.sorts = dynamics.neighbours().sorts();
   flow.end = dynamics.state();
   flow.pairs = dynamics.neighbours().pairs();
   return flow;
@@ -86,6 +89,9 @@ TEST(Shares, TheirNumberChangesNoBitOfTheMotion) {
       EXPECT_TRUE(shared.end == alone.end);
       EXPECT_EQ(shared.stress, alone.stress);
       EXPECT_EQ(shared.energy, alone.energy);
+      EXPECT_EQ(shared.flights, alone.flights);
+      EXPECT_EQ(shared.updates, alone.updates);
+      EXPECT_EQ(shared.sorts, alone.sorts);
       expect_same_list(shared.pairs, alone.pairs);
     }
     hwy::SetSupportedTargetsForTest(0);
@@ -160,6 +166,22 @@ TEST(Shares, ReadNoGrainOfAnotherThatTheyDoNotList) {
       EXPECT_EQ(share.grains.force[i].y, expected.force[i].y) << i;
       EXPECT_EQ(share.grains.force[i].z, expected.force[i].z) << i;
     }
+  }
+}
+
+// Two runs of 256, and one of them with a grain that is nobody's first.
+TEST(Shares, MayBeOfOneGrainOrOfWholeRuns) {
+  const Material m;
+  for (const int count : {257, 512}) {
+    const State start = test::squeezed(m, count, 4, 0.7, 0.1);
+    const auto end = [&](int threads) {
+      Dynamics dynamics(m, start, threads);
+      EXPECT_EQ(dynamics.threads(), threads);
+      dynamics.start(0.02, {});
+      for (int n = 0; n < 200; ++n) dynamics.step();
+      return dynamics.state();
+    };
+    EXPECT_TRUE(end(2) == end(1)) << count;
   }
 }
 
