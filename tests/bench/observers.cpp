@@ -7,9 +7,9 @@
 // each observer alone adds to a row, measured and as explained; and the same test with each other option
 // alone. Processor seconds of this thread, medians over the rounds; ratios round by round, median and range.
 // What is told as a range has it in a line of its own. All but the first test begin from one snapshot, whose
-// grains are what the trials have, too. With `memory`, the most memory of runs against what --explain says,
-// each run in a process of its own. Steps and rows are explained by trials alone, as of scenes too long to be
-// run to be explained.
+// grains are what the trials have, too. Steps and rows are explained by trials alone, as of scenes too long to
+// be run to be explained. With `memory`, the most memory of runs against what --explain says, each run in a
+// process of its own.
 #include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
