@@ -160,18 +160,50 @@ TEST(Cost, OfFilesAgainstThoseOfARun) {
   fs::remove_all(dir);
 }
 
-/// Not others like them: in a crystal each grain has twelve contacts, in another packing as dense fewer.
-TEST(Cost, GrainsOfASnapshotAreTriedThemselves) {
+/// What is said of a D2 test of `state`, of which nothing is run as a whole.
+SceneCost cost_of_d2(const State& state, const std::string& before = "") {
   const fs::path file =
       fs::temp_directory_path() / ("grainlaw-cost-crystal-" + std::to_string(::getpid()) + ".h5");
-  const State state = test::crystal(0.95, 0);
   SnapshotWriter(file, state.radius).append(state, {state.volume_fraction(), 0, 0, 0});
   const SceneCost cost = cost_of(
       scene_of(R"({"material": {"w": 1}, "preparation": {"snapshot": ")" + file.string() +
-               R"("}, "path": {"segments": [{"mode": "d2", "amount": 0.001}]}, "measure": {"rows": 2}})"),
+               R"("}, "path": {"segments": [)" + before +
+               R"({"mode": "d2", "amount": 0.001}]}, "measure": {"rows": 2, "observe": ["contacts"]}})"),
       {1, 60, 1e-6});
-  EXPECT_EQ(cost.contacts_per_grain, 6);
   fs::remove(file);
+  return cost;
+}
+
+/// Not others like them: in a crystal each grain has twelve contacts, in another packing as dense fewer.
+TEST(Cost, GrainsOfASnapshotAreTriedThemselves) {
+  EXPECT_EQ(cost_of_d2(test::crystal(0.95, 0)).contacts_per_grain, 6);
+}
+
+/// The trials lie at both densities between which the path goes. Loosened by 0.3 of strain, a crystal has no
+/// contact; as it is, twelve for each grain.
+TEST(Cost, GrainsOfASnapshotAreTriedAsTheyAreWhereverThePathGoes) {
+  const SceneCost cost =
+      cost_of_d2(test::crystal(0.95, 0), R"({"mode": "components", "strain": [-0.1, -0.1, -0.1]}, )");
+  EXPECT_EQ(cost.contacts_per_grain, 3);
+  EXPECT_GE(cost.observers.at(0).network_bytes, 32 * 6 * sizeof(observe::Touch));
+}
+
+/// A trial strains its box by more than a short test does; one that is too narrow for that has other grains.
+TEST(Cost, GrainsInANarrowBoxAreNotTriedThemselves) {
+  const State wide = test::crystal(0.95, 0);
+  State narrow;
+  narrow.box = 0.5 * wide.box;
+  for (std::size_t i = 0; i < wide.count(); ++i) {
+    const auto& x = wide.position[i];
+    if (std::max({x[0], x[1], x[2]}) > 0.49 * wide.box(0, 0)) continue;
+    narrow.position.push_back(x);
+    narrow.velocity.push_back({});
+    narrow.radius.push_back(1);
+  }
+  ASSERT_EQ(narrow.count(), 4u);
+  const SceneCost cost = cost_of_d2(narrow);
+  EXPECT_GT(cost.contacts_per_grain, 0);
+  EXPECT_NE(cost.contacts_per_grain, 6);
 }
 
 /// From a snapshot, stages whose steps are known only when the grains have run are run one after the other,
