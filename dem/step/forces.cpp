@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <vector>
 
 #include "grainlaw/dem/numbers/simd_targets.hpp"
 #include "grainlaw/dem/step/shares.hpp"
@@ -228,91 +229,54 @@ void add_forces_within(const Constants& constants, const Quad* place, const Quad
   add_and_clear(total, grain, force);
 }
 
-template <int k>
-HWY_INLINE void act_on_both_of(const Row& row, const CrossingPairs::Pair* pair, Quad* force) {
+/// Pairs through faces meet by an image and act on both grains; of those of a halo the second one is wanted.
+template <class Pair>
+constexpr bool crosses = std::is_same_v<Pair, CrossingPairs::Pair>;
+
+template <int k, class Pair>
+HWY_INLINE void act_on_pairs_of(const Row& row, const Pair* pair, Quad* force) {
   const Wide f = spread<k>(row.strength) * row.branch[k];
-  add(lower(f), force[pair[k].i]);
+  if constexpr (crosses<Pair>) add(lower(f), force[pair[k].i]);
   subtract(lower(f), force[pair[k].j]);
   if constexpr (lanes == 8) {
-    add(upper(f), force[pair[k + second].i]);
+    if constexpr (crosses<Pair>) add(upper(f), force[pair[k + second].i]);
     subtract(upper(f), force[pair[k + second].j]);
   }
 }
 
-HWY_INLINE void act_on_both(const Row& row, const CrossingPairs::Pair* pair, Quad* force) {
-  act_on_both_of<0>(row, pair, force);
-  act_on_both_of<1>(row, pair, force);
-  act_on_both_of<2>(row, pair, force);
-  act_on_both_of<3>(row, pair, force);
+template <class Pair>
+HWY_INLINE void act_on_pairs(const Row& row, const Pair* pair, Quad* force) {
+  act_on_pairs_of<0>(row, pair, force);
+  act_on_pairs_of<1>(row, pair, force);
+  act_on_pairs_of<2>(row, pair, force);
+  act_on_pairs_of<3>(row, pair, force);
 }
 
-template <Motion of>
-void add_forces_across(const Constants& constants, const Quad* place, const Quad* motion,
-                       const CrossingPairs& list, const Quad* shifts, Quad* force) {
-  if (list.pairs.empty()) return;
-  const auto compute = [&](const CrossingPairs::Pair* pair) HWY_ATTR {
+/// The forces of pairs that stand one by one, as many to a row as there are lanes.
+template <Motion of, class Pair>
+void add_forces_of_pairs(const Constants& constants, const Quad* place, const Quad* motion,
+                         const std::vector<Pair>& pairs, const Quad* shifts, Quad* force) {
+  if (pairs.empty()) return;
+  const auto compute = [&](const Pair* pair) HWY_ATTR {
     Row row;
     Wide velocity[4];
     for (std::size_t k = 0; k < 4; ++k) {
-      const CrossingPairs::Pair &a = pair[k], &b = pair[k + second];
-      row.branch[k] =
-          mul_sub_from(constants.apart, rows(place[a.j], place[b.j]), rows(place[a.i], place[b.i])) -
-          rows(shifts[a.image], shifts[b.image]);
-      if constexpr (of != Motion::none)
-        velocity[k] = rows(motion[a.i], motion[b.i]) - rows(motion[a.j], motion[b.j]);
-    }
-    row.strength = strength_of<of>(constants, row.branch, velocity);
-    return row;
-  };
-  const CrossingPairs::Pair *pair = list.pairs.data(), *const end = pair + list.pairs.size();
-  for (Row row = compute(pair);;) {
-    const CrossingPairs::Pair* const next = pair + lanes;
-    if (next == end) return act_on_both(row, pair, force);
-    const Row computed = compute(next);
-    act_on_both(row, pair, force);
-    row = computed;
-    pair = next;
-  }
-}
-
-template <int k>
-HWY_INLINE void act_on_second_of(const Row& row, const HaloPairs::Pair* pair, Quad* force) {
-  const Wide f = spread<k>(row.strength) * row.branch[k];
-  subtract(lower(f), force[pair[k].j]);
-  if constexpr (lanes == 8) subtract(upper(f), force[pair[k + second].j]);
-}
-
-HWY_INLINE void act_on_second(const Row& row, const HaloPairs::Pair* pair, Quad* force) {
-  act_on_second_of<0>(row, pair, force);
-  act_on_second_of<1>(row, pair, force);
-  act_on_second_of<2>(row, pair, force);
-  act_on_second_of<3>(row, pair, force);
-}
-
-/// Adds to the second grain of each pair alone.
-template <Motion of>
-void add_forces_on_second(const Constants& constants, const Quad* place, const Quad* motion,
-                          const HaloPairs& list, Quad* force) {
-  if (list.pairs.empty()) return;
-  const auto compute = [&](const HaloPairs::Pair* pair) HWY_ATTR {
-    Row row;
-    Wide velocity[4];
-    for (std::size_t k = 0; k < 4; ++k) {
-      const HaloPairs::Pair &a = pair[k], &b = pair[k + second];
+      const Pair &a = pair[k], &b = pair[k + second];
       row.branch[k] =
           mul_sub_from(constants.apart, rows(place[a.j], place[b.j]), rows(place[a.i], place[b.i]));
+      if constexpr (crosses<Pair>) row.branch[k] = row.branch[k] - rows(shifts[a.image], shifts[b.image]);
       if constexpr (of != Motion::none)
         velocity[k] = rows(motion[a.i], motion[b.i]) - rows(motion[a.j], motion[b.j]);
     }
     row.strength = strength_of<of>(constants, row.branch, velocity);
     return row;
   };
-  const HaloPairs::Pair *pair = list.pairs.data(), *const end = pair + list.pairs.size();
+  const Pair *pair = pairs.data(), *const end = pair + pairs.size();
   for (Row row = compute(pair);;) {
-    const HaloPairs::Pair* const next = pair + lanes;
-    if (next == end) return act_on_second(row, pair, force);
+    const Pair* const next = pair + lanes;
+    if (next == end) return act_on_pairs(row, pair, force);
     const Row computed = compute(next);
-    act_on_second(row, pair, force);
+    act_on_pairs(row, pair, force);
     row = computed;
     pair = next;
   }
@@ -332,7 +296,7 @@ void add_to_each(const ContactLaw& law, const Grains& grains, const Mat3& gradie
                             both(0, 1)};
   const Quad* const place = grains.place.data();
   const Quad* const motion = grains.motion.data();
-  add_forces_on_second<of>(constants, place, motion, halo, force);
+  add_forces_of_pairs<of>(constants, place, motion, halo.pairs, shifts, force);
   if (grains.count() > most_cached)
     add_forces_within<of>(constants, place, motion, within, Frontier{}, force);
   else if (written_soon.empty() || within.groups.empty())
@@ -340,7 +304,7 @@ void add_to_each(const ContactLaw& law, const Grains& grains, const Mat3& gradie
   else
     add_forces_within<of>(constants, place, motion, within, WrittenSoon(written_soon, within.groups.size()),
                           force);
-  add_forces_across<of>(constants, place, motion, crossing, shifts, force);
+  add_forces_of_pairs<of>(constants, place, motion, crossing.pairs, shifts, force);
 }
 
 void add_forces(const ContactLaw& law, const Grains& grains, const Cell& cell, const HaloPairs& halo,
