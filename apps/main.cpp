@@ -4,6 +4,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -16,6 +17,7 @@
 #include "grainlaw/apps/terminal.hpp"
 #include "grainlaw/apps/version_text.hpp"
 #include "grainlaw/element/error.hpp"
+#include "grainlaw/element/words.hpp"
 
 namespace grainlaw::apps {
 
@@ -60,20 +62,50 @@ int complain_usage(const CLI::App& program, const std::string& what) {
 }
 
 /// The commands of a program, or of a command that has some itself.
-std::string names_within(const CLI::App& app) {
+std::vector<std::string> commands_of(const CLI::App& app) {
   std::vector<std::string> names;
   for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
+  return names;
+}
+
+std::string listed(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// The end of a complaint about `given`.
+std::string hint(const std::string& given, const std::vector<std::string>& known) {
+  const std::string near = nearest_word(given, known);
+  return near.empty() ? "" : ", did you mean " + near + "?";
+}
+
+/// The command that was named last: `bench dem` of `grainlaw bench dem --grains 9261`.
+const CLI::App& last_command(const CLI::App& program) {
+  const auto chosen = program.get_subcommands();
+  return chosen.empty() ? program : last_command(*chosen.back());
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+bool looks_like_option(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' &&
+         (word[1] == '-' || std::isalpha(static_cast<unsigned char>(word[1])));
+}
+
 /// What is wrong with a command line.
-std::string reason(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
-  if (argc > 1 && argv[1][0] == '-') return fmt::format("unknown option {}", argv[1]);
+std::string reason(const CLI::App& program, const CLI::ParseError& error) {
+  for (const std::string& left : program.remaining(true))
+    if (const std::string name = left.substr(0, left.find('=')); looks_like_option(name))
+      return fmt::format("unknown option {}{}", name, hint(name, option_names(last_command(program))));
   const auto chosen = program.get_subcommands();
   if (!chosen.empty() && chosen.front()->get_subcommands().empty())
-    if (const std::string known = names_within(*chosen.front()); !known.empty())
-      return fmt::format("must be followed by one of {}", known);
+    if (const auto known = commands_of(*chosen.front()); !known.empty())
+      return fmt::format("must be followed by one of {}", listed(known));
   return error.what();
 }
 
@@ -86,22 +118,20 @@ int run_command_line(int argc, char** argv) {
                                     add_fit(program),       add_polish(program),   add_report(program),
                                     add_bench(program),     add_export(program),   add_probe(program),
                                     add_replay(program),    add_infer(program)};
-  const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
-  const auto is_unknown = [&](const std::string& name) {
-    return std::none_of(commands.begin(), commands.end(),
-                        [&](const auto* known) { return known->get_name() == name; });
-  };
-  if (argc > 1 && argv[1][0] != '-' && is_unknown(argv[1]))
-    return complain_usage(
-        program, fmt::format("unknown command \"{}\"; known are {}", argv[1], names_within(program)));
+  const std::vector<std::string> known = commands_of(program);
+  if (const std::string name = argc > 1 ? argv[1] : "-";
+      name[0] != '-' && std::find(known.begin(), known.end(), name) == known.end())
+    return complain_usage(program, fmt::format("unknown command \"{}\"{}; known are {}", name,
+                                               hint(name, known), listed(known)));
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
     write_stdout(success.get_name() == "CallForVersion" ? success.what() : program.help());
     return all_well;
   } catch (const CLI::ParseError& error) {
-    return complain_usage(program, reason(program, error, argc, argv));
+    return complain_usage(program, reason(program, error));
   }
+  const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
   for (std::size_t i = 0; i < commands.size(); ++i)
     if (commands[i]->parsed()) return actions.at(i)();
   return bad_input;

@@ -27,16 +27,21 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+std::string probably(const std::string& word, const std::vector<std::string>& allowed) {
+  const std::string near = nearest_word(word, allowed);
+  return near.empty() ? "" : "; did you mean " + near + "?";
+}
+
 std::string read_word(const Reader& reader, const std::string& key, const Json& item,
-                      const std::vector<std::string>& allowed) {
+                      const std::vector<std::string>& allowed, const HintOnWord& hint) {
   const std::string word = item.is_string() ? item.get<std::string>() : "";
   if (std::find(allowed.begin(), allowed.end(), word) != allowed.end()) return word;
   std::string list;
   for (const auto& one : allowed) list += (list.empty() ? "" : ", ") + one;
-  const std::string near = nearest_word(word, allowed);
+  const std::string told = hint ? hint(word) : "";
   reader.fail(key, "must be one of " + list + ", got " +
                        item.dump(-1, ' ', false, Json::error_handler_t::replace) +
-                       (near.empty() ? "" : "; did you mean " + near + "?"));
+                       (told.empty() ? probably(word, allowed) : told));
 }
 
 }  // namespace
@@ -51,7 +56,7 @@ std::string nearest_word(std::string_view name, const std::vector<std::string>& 
 
 std::vector<std::string> read_words(Reader& reader, std::string_view key,
                                     const std::vector<std::string>& allowed,
-                                    const std::vector<std::string>& fallback) {
+                                    const std::vector<std::string>& fallback, const HintOnWord& hint) {
   reader.optional({key});
   if (!reader.has(key)) return fallback;
   const Json& list = reader.raw(key);
@@ -59,7 +64,7 @@ std::vector<std::string> read_words(Reader& reader, std::string_view key,
   std::vector<std::string> words;
   for (const Json& item : list) {
     const std::string place = std::string(key) + "[" + std::to_string(words.size()) + "]";
-    words.push_back(read_word(reader, place, item, allowed));
+    words.push_back(read_word(reader, place, item, allowed, hint));
     if (std::count(words.begin(), words.end(), words.back()) > 1)
       reader.fail(place, "is given twice, got " + words.back());
   }

@@ -405,7 +405,10 @@ TEST(Scene, GroupsOfColumnsAreKeptInTheOrderOfTheirColumns) {
   EXPECT_THAT(refused(R"(["fabric", "stres"])"),
               testing::HasSubstr("measure.standard[1]: must be one of stress, fabric, coordination, "
                                  "energy_ratio, got \"stres\"; did you mean stress?"));
-  EXPECT_THAT(refused(R"(["P"])"), testing::HasSubstr("measure.standard[0]: must be one of stress, fabric"));
+  EXPECT_THAT(refused(R"(["fabric", "P"])"),
+              testing::HasSubstr("measure.standard[1]: must be one of stress, fabric, coordination, "
+                                 "energy_ratio, got \"P\", a column of stress"));
+  EXPECT_THAT(refused(R"(["nu"])"), testing::HasSubstr("measure.standard[0]: must be one of stress, fabric"));
   EXPECT_THAT(refused(R"(["fabric", "stress", "fabric"])"),
               testing::HasSubstr("measure.standard[2]: is given twice, got fabric"));
   EXPECT_THAT(refused(R"("stress")"), testing::HasSubstr("measure.standard: must be a list of words"));
