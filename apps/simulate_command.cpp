@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include "grainlaw/apps/arguments.hpp"
 #include "grainlaw/apps/commands.hpp"
@@ -81,6 +82,17 @@ void remove_leftover(const fs::path& part) {
   fs::remove_all(part);
 }
 
+/// The test writes into `part`, and begins by emptying it.
+void check_apart(const fs::path& part, const fs::path& input) {
+  std::error_code code;
+  const std::string way =
+      fs::weakly_canonical(input, code).lexically_relative(fs::weakly_canonical(part, code));
+  if (!way.empty() && !way.starts_with(".."))
+    throw Error(input.string(), "",
+                "lies in " + part.string() +
+                    ", which this test would replace; move it, or give another directory with -o");
+}
+
 /// Makes the folder ready for the test: empty, or with the checkpoint that it is to go on from, or with the
 /// whole record of a run that was killed before it could give it its name.
 void make_ready(const fs::path& part, const dem::Scene& scene, const Arguments& arguments) {
@@ -90,6 +102,9 @@ void make_ready(const fs::path& part, const dem::Scene& scene, const Arguments& 
       throw Error(arguments.output, "",
                   "holds no interrupted test to go on with (no " + part.filename().string() +
                       " beside it); leave --resume out to start one");
+    check_apart(part, arguments.scene);
+    if (const auto* begin = std::get_if<dem::FromSnapshot>(&scene.preparation))
+      check_apart(part, begin->file);
     return remove_leftover(part);
   }
   if (!arguments.run.resume)

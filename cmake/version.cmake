@@ -1,10 +1,12 @@
-# Version and commit, for element/version.cpp alone: a new commit compiles that one file and links again.
+# Version, commit and options of the build, for element/version.cpp alone: a new commit compiles that one file and links
+# again.
 #
 # Included by CMakeLists.txt, this defines grainlaw_version(target). Run as a script (cmake -P) at every build, it writes
 # OUTPUT, and only if its text has changed.
 
 if(CMAKE_SCRIPT_MODE_FILE)
   set(commit unknown)
+  set(build "${OPTIONS}")
   find_program(git git)
   if(git)
     # A source tree without history may lie inside someone else's repository: that one's commit is not ours.
@@ -23,6 +25,10 @@ if(CMAKE_SCRIPT_MODE_FILE)
                         OUTPUT_VARIABLE changes ERROR_QUIET)
         if(changes)
           string(APPEND commit -dirty)
+          execute_process(COMMAND ${git} --no-optional-locks -C ${SOURCE} diff HEAD OUTPUT_VARIABLE changes ERROR_QUIET)
+          string(SHA1 changes "${changes}")
+          string(SUBSTRING ${changes} 0 8 changes)
+          string(APPEND build ", changes ${changes}")
         endif()
       endif()
     endif()
@@ -49,6 +55,7 @@ namespace grainlaw::build_info {
 
 inline constexpr const char* version = "@VERSION@";
 inline constexpr const char* commit = "@commit@";
+inline constexpr const char* build = R"build(@build@)build";
 
 }  // namespace grainlaw::build_info
 ]])
@@ -58,9 +65,16 @@ endif()
 # grainlaw_version(target): lets the target include "grainlaw_build_info.hpp".
 function(grainlaw_version target)
   set(folder ${PROJECT_BINARY_DIR}/build_info)
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+  get_directory_property(options COMPILE_OPTIONS)
+  string(JOIN " " options ${CMAKE_BUILD_TYPE} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${options})
+  if(GRAINLAW_BATCHES)
+    string(APPEND options " in batches")
+  endif()
   add_custom_target(grainlaw_build_info
                     COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
                             -DOUTPUT=${folder}/grainlaw_build_info.hpp
+                            "-DOPTIONS=${options}"
                             -P ${PROJECT_SOURCE_DIR}/cmake/version.cmake
                     BYPRODUCTS ${folder}/grainlaw_build_info.hpp
                     COMMENT "Looking up the commit" VERBATIM)

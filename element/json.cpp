@@ -35,6 +35,15 @@ std::string hint_at(std::string_view text, std::size_t byte) {
   return "";
 }
 
+/// The number that a message of the parser quotes as one that no double holds; empty where it quotes none.
+std::string too_large_number(std::string_view message) {
+  constexpr std::string_view before = "number overflow parsing '";
+  const auto at = message.find(before);
+  if (at == std::string_view::npos) return "";
+  const std::string_view rest = message.substr(at + before.size());
+  return std::string(rest.substr(0, rest.find('\'')));
+}
+
 /// A value as it stands in the file, shortened for a message.
 std::string shown(const Json& value) {
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -72,6 +81,11 @@ Json parse_json(std::string_view text, const std::string& file) {
     throw Error(file, "",
                 "line " + std::to_string(line_of(text, error.byte)) + " is not valid JSON" +
                     hint_at(text, error.byte));
+  } catch (const Json::out_of_range& error) {
+    const std::string number = too_large_number(error.what());
+    throw Error(file, "",
+                "line " + std::to_string(line_of(text, text.find(number))) +
+                    ": a number must be finite, got " + number);
   } catch (const Json::exception& error) {
     throw Error(file, "", std::string("is not valid JSON: ") + error.what());
   }

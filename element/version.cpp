@@ -8,4 +8,6 @@ std::string version() { return build_info::version; }
 
 std::string commit() { return build_info::commit; }
 
+std::string build_options() { return build_info::build; }
+
 }  // namespace grainlaw

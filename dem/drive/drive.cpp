@@ -5,10 +5,13 @@
 
 #include "grainlaw/dem/drive/controlled_drive.hpp"
 #include "grainlaw/dem/drive/quasistatic.hpp"
+#include "grainlaw/element/error.hpp"
+#include "grainlaw/element/short_text.hpp"
 
 namespace grainlaw::dem {
 
 namespace {
+constexpr double most_steps = 9e15;                  // doubles count to 2^53, a little more
 constexpr std::uint64_t relax_check_interval = 100;  // steps between two looks at the energies
 
 /// gamma e_x (x) e_y
@@ -34,10 +37,17 @@ Mat3 Drive::gradient(double t, double dt) const {
   return leg_.gamma ? glide(speed * *leg_.gamma) : -speed * strain_;
 }
 
+std::uint64_t whole_steps(double wanted) {
+  const double steps = std::ceil(wanted * (1 - 1e-12));
+  if (!(steps <= most_steps))
+    throw Error("must not take more than " + short_text(most_steps, 2) + " steps, but takes " +
+                short_text(steps, 2));
+  return static_cast<std::uint64_t>(steps);
+}
+
 StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_steps) {
-  const auto needed = static_cast<std::uint64_t>(std::ceil(leg.duration / longest_step * (1 - 1e-12)));
   StepPlan plan;
-  plan.steps = std::max({std::uint64_t{1}, least_steps, needed});
+  plan.steps = std::max({std::uint64_t{1}, least_steps, whole_steps(leg.duration / longest_step)});
   plan.dt = leg.duration / static_cast<double>(plan.steps);
   return plan;
 }

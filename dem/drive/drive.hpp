@@ -33,7 +33,11 @@ struct StepPlan {
   std::uint64_t steps = 1;  ///< for relax the most
   double dt = 0;            ///< us, at most what was asked for
 };
-/// At least `least_steps` (and one) of equal length, each no longer than `longest_step` us.
+/// `wanted` rounded up, but for rounding errors. Throws Error beyond 9e15: doubles would no longer count
+/// them.
+std::uint64_t whole_steps(double wanted);
+/// At least `least_steps` (and one) of equal length, each no longer than `longest_step` us. Throws as
+/// whole_steps() does.
 StepPlan plan_steps(const Leg& leg, double longest_step, std::uint64_t least_steps);
 
 /// Where a leg is whose strain is not known in advance (see controlled_drive.hpp).

@@ -13,8 +13,7 @@ constexpr std::uint64_t most_passes = 2'000'000;  // an increment near jamming t
 }
 
 StepPlan plan_increments(const Leg& leg, std::uint64_t rows) {
-  const auto needed =
-      static_cast<std::uint64_t>(std::ceil(largest_component(leg.strain) / leg.increment * (1 - 1e-12)));
+  const std::uint64_t needed = whole_steps(largest_component(leg.strain) / leg.increment);
   StepPlan plan;
   if (leg.drives()) plan.steps = std::max(std::uint64_t{1}, (needed + rows - 1) / rows) * rows;
   plan.dt = leg.duration / static_cast<double>(plan.steps);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -66,6 +67,14 @@ std::vector<std::uint64_t> each_once(std::vector<std::uint64_t> rising) {
   return rising;
 }
 
+StepPlan planned(const Scene& scene, const std::string& key, const std::function<StepPlan()>& plan) {
+  try {
+    return plan();
+  } catch (const Error& error) {
+    throw Error(scene.file, key, std::string(error.what()) + "; give it less time, or longer time steps");
+  }
+}
+
 Stage stage_of_path(const Scene& scene, const Leg& leg, std::size_t index, double nu_start,
                     double longest_step) {
   Stage stage;
@@ -76,8 +85,10 @@ Stage stage_of_path(const Scene& scene, const Leg& leg, std::size_t index, doubl
   const bool rests = !leg.drives();
   const auto rows = rests ? std::uint64_t{1} : static_cast<std::uint64_t>(scene.measure.rows);
   const std::uint64_t least = leg.controlled() ? look_interval : least_steps_per_row;
-  stage.stepping =
-      leg.minimises() ? plan_increments(leg, rows) : plan_steps(leg, longest_step, rests ? 1 : least * rows);
+  stage.stepping = planned(scene, scene.path.segments[index].key, [&] {
+    return leg.minimises() ? plan_increments(leg, rows)
+                           : plan_steps(leg, longest_step, rests ? 1 : least * rows);
+  });
   if (leg.controlled()) {
     stage.row_count = rows;
   } else if (leg.duration > 0) {
@@ -89,8 +100,10 @@ Stage stage_of_path(const Scene& scene, const Leg& leg, std::size_t index, doubl
   return stage;
 }
 
-Stage stage_of_preparation(const std::string& name, const Leg& leg, double longest_step) {
-  return {name, leg, {}, plan_steps(leg, longest_step, 1), {}, {}, {}, 0};
+Stage stage_of_preparation(const Scene& scene, const std::string& name, const std::string& key,
+                           const Leg& leg, double longest_step) {
+  const StepPlan plan = planned(scene, key, [&] { return plan_steps(leg, longest_step, 1); });
+  return {name, leg, {}, plan, {}, {}, {}, 0};
 }
 
 }  // namespace
@@ -118,10 +131,10 @@ double expected_passes(const std::vector<Leg>& legs, const Measure& measure, dou
 std::vector<Stage> plan_stages(const Scene& scene, double nu_start, const LongestSteps& longest) {
   std::vector<Stage> stages;
   if (const auto* packing = std::get_if<NewPacking>(&scene.preparation)) {
-    stages.push_back(
-        stage_of_preparation("compress the gas", compression_leg(*packing), longest.preparation));
-    stages.push_back(
-        stage_of_preparation("relax the packing", relaxation_leg(packing->relax), longest.preparation));
+    stages.push_back(stage_of_preparation(scene, "compress the gas", "preparation.rate",
+                                          compression_leg(*packing), longest.preparation));
+    stages.push_back(stage_of_preparation(scene, "relax the packing", "preparation.relax.duration",
+                                          relaxation_leg(packing->relax), longest.preparation));
   }
   const std::vector<Leg> legs = scene.legs(nu_start);
   for (std::size_t i = 0; i < legs.size(); ++i)

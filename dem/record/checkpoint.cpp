@@ -28,9 +28,13 @@ constexpr auto aside_file = "checkpoint.bin.part";
 
 /// The first line of a checkpoint, as this program writes it for `scene`.
 Json header(const Scene& scene, const fs::path& dir) {
-  return {{"format", format},      {"version", version()},
-          {"commit", commit()},    {"compiler", compiler_name()},
-          {"simd", simd_target()}, {"scene", digest(scene.to_json(dir).dump())}};
+  return {{"format", format},
+          {"version", version()},
+          {"commit", commit()},
+          {"compiler", compiler_name()},
+          {"build", build_options()},
+          {"simd", simd_target()},
+          {"scene", digest(scene.to_json(dir).dump())}};
 }
 
 /// So that a renamed file is found again after the machine lost its power.
@@ -68,7 +72,7 @@ void compare(const fs::path& file, const Json& got, const Json& want, const Scen
                     (difference.empty() ? "" : " (" + difference + ")") + "; go on with that scene, or " +
                     start_anew(dir));
   }
-  for (const char* key : {"version", "commit", "compiler"})
+  for (const char* key : {"version", "commit", "compiler", "build"})
     if (differs(key))
       throw Error(file.string(), key,
                   "was written by grainlaw with " + std::string(key) + " " + text(got, key) +

@@ -243,6 +243,25 @@ TEST_F(Simulate, KilledBeforeItNamesItsRecordItOnlyNamesIt) {
   EXPECT_FALSE(fs::exists(folder / "x.part"));
 }
 
+TEST_F(Simulate, RefusesToReplaceWhatItReads) {
+  std::string with_snapshot = scene("200");
+  with_snapshot.replace(with_snapshot.find("\"rows\""), 0, R"("snapshots": [{"segment": 0}], )");
+  write("s.json", with_snapshot);
+  ASSERT_EQ(run({"simulate", "s.json", "-o", "x"}).status, 0);
+  // As a run that is killed before its first checkpoint leaves it.
+  fs::create_directory(folder / "y.part");
+  fs::rename(folder / "x/snapshots.h5", folder / "y.part/snapshots.h5");
+  fs::rename(folder / "x/scene.json", folder / "y.part/scene.json");
+  write("from.json", R"({"preparation": {"snapshot": "y.part/snapshots.h5"},
+                         "path": {"segments": [{"mode": "relax", "duration": 1}]}})");
+  EXPECT_TRUE(refuses(run({"simulate", "from.json", "-o", "y"}),
+                      {"y.part/snapshots.h5: lies in ", "y.part, which this test would replace"}));
+  EXPECT_TRUE(refuses(run({"simulate", "y.part/scene.json", "-o", "./y"}),
+                      {"y.part/scene.json: lies in ", "move it, or give another directory with -o"}));
+  EXPECT_TRUE(fs::exists(folder / "y.part/snapshots.h5"));
+  EXPECT_EQ(run({"simulate", "from.json", "-o", "z"}).status, 0);
+}
+
 TEST_F(Simulate, AFullDiskKeepsTheLastCheckpoint) {
   const auto running = start_long();
   running->send(SIGINT);

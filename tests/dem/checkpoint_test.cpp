@@ -20,6 +20,7 @@
 #include "grainlaw/dem/step/dynamics.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
+#include "grainlaw/element/version.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {
@@ -279,6 +280,9 @@ TEST_F(Checkpoints, OfAnotherProgramIsRefused) {
   EXPECT_THAT(refusal_of("version", "9.9.9"),
               HasSubstr("version: was written by grainlaw with version 9.9.9"));
   EXPECT_THAT(refusal_of("compiler", "gcc 1.0.0"), HasSubstr("compiler gcc 1.0.0"));
+  EXPECT_THAT(refusal_of("build", "Debug -g"),
+              HasSubstr("build: was written by grainlaw with build Debug -g, this one has " +
+                        build_options() + ": it may not go on with the same numbers"));
   EXPECT_THAT(refusal_of("format", "grainlaw-checkpoint-7"),
               HasSubstr("format: must be grainlaw-checkpoint-1, got grainlaw-checkpoint-7"));
 }

@@ -93,6 +93,30 @@ TEST(Stage, RefusesEdgesThatHoldTheBoxNoMore) {
 }
 
 /// F = (65, 8; 8, 1) makes the square lattice itself, too, but not before it was narrow.
+TEST(Stage, RefusesMoreStepsThanCanBeCounted) {
+  const auto refusal_of = [](const std::string& rest) {
+    const Scene scene = Scene::read(Reader(parse_json("{" + rest + "}", "s.json"), "s.json"), "");
+    try {
+      plan_stages(scene, 0.7, LongestSteps(scene, scene.material.r_min()));
+      return std::string("accepted");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  };
+  const std::string d2 = R"("path": {"segments": [{"mode": "d2", "amount": 0.0012}]})",
+                    relax = R"("path": {"segments": [{"mode": "relax", "duration": 1e14}]})",
+                    beginning = "must not take more than 9e+15 steps, but takes ";
+  EXPECT_THAT(refusal_of(d2 + R"(, "measure": {"time_step": 1e-20})"),
+              testing::HasSubstr("s.json: path.segments[0]: " + beginning));
+  EXPECT_THAT(refusal_of(relax + R"(, "measure": {"time_step": {"error": 1e-12}})"),
+              testing::HasSubstr("s.json: path.segments[0]: " + beginning));
+  EXPECT_THAT(refusal_of(d2 + R"(, "preparation": {"rate": 1e-18})"),
+              testing::HasSubstr("s.json: preparation.rate: " + beginning));
+  EXPECT_THAT(refusal_of(d2 + R"(, "preparation": {"relax": {"duration": 1e15}})"),
+              testing::HasSubstr("s.json: preparation.relax.duration: " + beginning));
+  EXPECT_EQ(refusal_of(relax), "accepted");
+}
+
 TEST(Stage, RefusesABoxThatIsNarrowOnlyOnItsWay) {
   const double t = 4 + std::sqrt(17.0), s = 2 * std::log(t);
   const std::string segment = components(stretch(s, t));

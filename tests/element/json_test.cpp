@@ -30,6 +30,8 @@ TEST(Json, SyntaxErrorNamesTheLine) {
             "a.json: line 1 is not valid JSON: a number must be finite, got -Infinity");
   EXPECT_EQ(refusal([] { parse_json("{\"a\": null, nan}", "a.json"); }),
             "a.json: line 1 is not valid JSON: a number must be finite, got nan");
+  EXPECT_EQ(refusal([] { parse_json("{\n\"a\": 1,\n\"b\": -1e400}", "a.json"); }),
+            "a.json: line 3: a number must be finite, got -1e400");
 }
 
 TEST(Json, KeyGivenTwiceIsRefused) {
