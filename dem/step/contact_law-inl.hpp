@@ -1,5 +1,7 @@
-// The contact law: force, energy and stiffness of one contact from scalars. Another law is another struct
-// with the same members; nothing else in the engine knows the formula. Its force is a template, of what
+// The contact law: force, energy and stiffness of one contact from scalars. Another law of overlap and
+// closing velocity is another struct with the same members; beside it only Material::contact_duration knows
+// the formula, from which time steps follow. (One that depends on the sizes of the two grains would need them
+// handed to it by the loops.) Its force is a template, of what
 // numbers and vectors have alike: sums, differences, products, quotients and root(). Where the overlap is
 // negative it may be anything, and is not taken. Included into grainlaw::dem for numbers, and by the force
 // loop once per instruction set for vectors of them, one contact to a lane; hence no include guard.
