@@ -15,6 +15,7 @@ namespace grainlaw::dem {
 namespace {
 
 using observe::Observers;
+using testing::DoubleEq;
 
 Material elastic() {
   Material m;
@@ -83,6 +84,53 @@ TEST(Observers, EqualForcesAreOneBinOfTheDistributions) {
     EXPECT_DOUBLE_EQ(table["x"][10], 1);
     EXPECT_NEAR(sum, 1, 1e-14);
   }
+}
+
+/// A pair of unit grains: how deep they overlap, mm, and how fast they close, mm/us.
+struct Pair {
+  double overlap, closing;
+};
+
+/// Sixteen pairs alike and four others, far from each other. Forces 1e5 overlap + 1000 closing are 400 (16
+/// times), 2200, 3800, -1000 and 28600, their mean 2000; the mean overlap is 0.027.
+State twenty_pairs() {
+  std::vector<Pair> pairs(16, {0.01, -0.6});
+  pairs.insert(pairs.end(), {{0.03, -0.8}, {0.03, 0.8}, {0.02, -3}, {0.3, -1.4}});
+  State state;
+  state.box = Mat3::diagonal({10, 20, 20});
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const double y = 2 + 4 * static_cast<double>(p % 5), z = 2 + 4 * static_cast<double>(p / 5);
+    state.position.insert(state.position.end(), {{2, y, z}, {4 - pairs[p].overlap, y, z}});
+    state.velocity.insert(state.velocity.end(), {{pairs[p].closing, 0, 0}, {0, 0, 0}});
+    state.radius.insert(state.radius.end(), 2, 1);
+  }
+  return state;
+}
+
+/// P of the bins that are not empty: so many contacts over 20 * 0.1.
+std::map<std::size_t, double> filled_bins(const std::string& name) {
+  const Record table = table_of(name, Material{}, twenty_pairs());
+  std::map<std::size_t, double> filled;
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    EXPECT_DOUBLE_EQ(table["x"][k], 0.1 * static_cast<double>(k));
+    if (table["count"][k] > 0) filled[k] = table["P"][k];
+    EXPECT_DOUBLE_EQ(table["count"][k], 2 * table["P"][k]) << name << " " << k;
+  }
+  return filled;
+}
+
+TEST(Observers, ForcesByHand) {
+  // f/<f>: 0.2, 1.1, 1.9, and outside -0.5 and 14.3
+  EXPECT_THAT(filled_bins("force_distribution"),
+              testing::ElementsAre(testing::Pair(2, DoubleEq(8)), testing::Pair(11, DoubleEq(0.5)),
+                                   testing::Pair(19, DoubleEq(0.5))));
+}
+
+TEST(Observers, OverlapsByHand) {
+  // delta/<delta>: 0.370, 0.741, 1.111, and outside 11.1
+  EXPECT_THAT(filled_bins("overlap_distribution"),
+              testing::ElementsAre(testing::Pair(4, DoubleEq(8)), testing::Pair(7, DoubleEq(0.5)),
+                                   testing::Pair(11, DoubleEq(1))));
 }
 
 TEST(Observers, RattlersAreLeftOutOfPartnersToo) {
@@ -358,26 +406,41 @@ TEST(Observers, NoContactOfTheLastRowIsSeenInTheNext) {
   }
 }
 
+/// sqrt(3 J2), with the sign of Q_yy - Q_xx.
+double d2_deviator(const Mat3& q) {
+  const double mean = (q(0, 0) + q(1, 1) + q(2, 2)) / 3;
+  double squares = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < 3; ++b) squares += std::pow(q(a, b) - (a == b ? mean : 0), 2);
+  return std::copysign(std::sqrt(1.5 * squares), q(1, 1) - q(0, 0));
+}
+
 TEST(Observers, RadiusAgainstContactsByBruteForce) {
   const Material m = elastic();
   const State state = test::squeezed(m, 300, 31, 0.75);
   const Record table = table_of("radius", m, state);
-  const auto contacts = test::brute_force(state);
   std::vector<double> count(300, 0), overlap(300, 0);
-  for (const auto& [i, j, delta] : contacts)
-    for (const auto g : {i, j}) {
+  std::vector<Mat3> normals(300);  // sum of n n of each grain
+  for (const Met& c : contacts_of(state))
+    for (const auto g : {c.i, c.j}) {
       ++count[g];
-      overlap[g] += delta;
+      overlap[g] += c.overlap;
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b)
+          normals[g](a, b) += c.branch[a] * c.branch[b] / dot(c.branch, c.branch);
     }
   const auto [least, most] = std::minmax_element(state.radius.begin(), state.radius.end());
   for (std::size_t k = 0; k < 20; ++k) {
-    double grains = 0, touching = 0, sum = 0, bearing = 0, held = 0;
+    double grains = 0, touching = 0, sum = 0, bearing = 0, held = 0, volume = 0;
+    Mat3 fabric;  // sum of V_p n n
     for (std::size_t i = 0; i < 300; ++i) {
       const double sc = (state.radius[i] - *least) / (*most - *least);
       if (std::min<double>(19, std::floor(sc * 20)) != static_cast<double>(k)) continue;
       ++grains;
       touching += count[i];
       sum += overlap[i];
+      volume += sphere_volume(state.radius[i]);
+      fabric = fabric + sphere_volume(state.radius[i]) * normals[i];
       if (count[i] >= 4) {
         ++bearing;
         held += count[i];
@@ -389,6 +452,7 @@ TEST(Observers, RadiusAgainstContactsByBruteForce) {
     EXPECT_NEAR(table["overlap"][k], sum / touching, 1e-12);
     ASSERT_GT(bearing, 0);
     EXPECT_NEAR(table["C_star"][k], held / bearing, 1e-12);
+    EXPECT_NEAR(table["F_dev"][k], d2_deviator(state.volume_fraction() / volume * fabric), 1e-12);
   }
 }
 
