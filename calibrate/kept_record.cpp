@@ -57,7 +57,8 @@ void check_kept_record(const fs::path& dir, const Json& planned) {
     const bool ends_early = !cut_short(dir).empty();
     const std::string table = (dir / "record.csv").string();
     std::vector<std::string> columns = record_columns_with(wanted.measure.standard);
-    for (const auto& column : dem::observe::columns(wanted.measure.observe)) columns.push_back(column);
+    for (const auto& column : dem::observe::lasting_columns(wanted.measure.observe))
+      columns.push_back(column);
     const Record record = Record::read_csv(table, columns);
     for (const auto& file : dem::observe::tables(wanted.measure.observe))
       Record::read_csv(dir / file, {"row"});

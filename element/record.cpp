@@ -43,14 +43,29 @@ struct ColumnRange {
 /// What no packing and no law can exceed. The pressure of a gas may be slightly negative: contacts pull
 /// before parting.
 const std::vector<ColumnRange>& column_ranges() {
-  static const std::vector<ColumnRange> ranges{
-      {"nu", inside(0, 1)},        {"P", between(-1e3, 1e3)}, {"sigma_dev", between(-1e3, 1e3)},
-      {"F_v", at_least(0)},        {"C", at_least(0)},        {"C_star", at_least(0)},
-      {"f_NR", between(0, 1)},     {"phi_J", inside(0, 1)},   {"Ek_over_Ep", at_least(0)},
-      {"C_r", at_least(0)},        {"phi_r", between(0, 1)},  {"E_k", at_least(0)},
-      {"E_p", at_least(0)},        {"overlap", at_least(0)},  {"xi_x", between(0, 1)},
-      {"xi_y", between(0, 1)},     {"xi_z", between(0, 1)},   {"percolating", between(0, 3)},
-      {"unbalanced", at_least(0)}, {"D2_min", at_least(0)}};
+  static const std::vector<ColumnRange> ranges{{"nu", inside(0, 1)},
+                                               {"P", between(-1e3, 1e3)},
+                                               {"sigma_dev", between(-1e3, 1e3)},
+                                               {"F_v", at_least(0)},
+                                               {"C", at_least(0)},
+                                               {"C_star", at_least(0)},
+                                               {"f_NR", between(0, 1)},
+                                               {"phi_J", inside(0, 1)},
+                                               {"Ek_over_Ep", at_least(0)},
+                                               {"C_r", at_least(0)},
+                                               {"phi_r", between(0, 1)},
+                                               {"E_k", at_least(0)},
+                                               {"E_p", at_least(0)},
+                                               {"overlap", at_least(0)},
+                                               {"xi_x", between(0, 1)},
+                                               {"xi_y", between(0, 1)},
+                                               {"xi_z", between(0, 1)},
+                                               {"percolating", between(0, 3)},
+                                               {"percolates_x", between(0, 1)},
+                                               {"percolates_y", between(0, 1)},
+                                               {"percolates_z", between(0, 1)},
+                                               {"unbalanced", at_least(0)},
+                                               {"D2_min", at_least(0)}};
   return ranges;
 }
 

@@ -10,6 +10,8 @@ namespace grainlaw::dem::observe {
 const std::vector<std::string>& names();
 /// The columns that `asked` adds to record.csv, in the order of names().
 std::vector<std::string> columns(const std::vector<std::string>& asked);
+/// Of these, what every version wrote: a record that was made earlier may lack the others.
+std::vector<std::string> lasting_columns(const std::vector<std::string>& asked);
 /// The files beside record.csv that `asked` makes.
 std::vector<std::string> tables(const std::vector<std::string>& asked);
 

@@ -29,6 +29,16 @@ std::vector<std::string> columns(const std::vector<std::string>& asked) {
   return list;
 }
 
+std::vector<std::string> lasting_columns(const std::vector<std::string>& asked) {
+  std::vector<std::string> list;
+  for_each_asked(asked, [&]<class O>(std::type_identity<O>) {
+    std::size_t later = 0;
+    if constexpr (requires { O::later_columns; }) later = O::later_columns;
+    list.insert(list.end(), O::columns.begin(), O::columns.end() - later);
+  });
+  return list;
+}
+
 std::vector<std::string> tables(const std::vector<std::string>& asked) {
   std::vector<std::string> list;
   for_each_asked(asked, [&]<class O>(std::type_identity<O>) {

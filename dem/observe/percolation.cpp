@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
-#include <utility>
+#include <tuple>
 
 namespace grainlaw::dem::observe {
 
 namespace {
 
-/// A displacement in whole edges of the box.
+/// A displacement in whole edges of H.
 using Images = std::array<int, 3>;
 
 Images operator+(const Images& a, const Images& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
@@ -71,17 +72,21 @@ class Clusters {
   std::vector<std::array<bool, 3>> wraps_;
 };
 
+/// Parts of the edges H that make up x. The cell's own fractions are of edges H M, which it chooses anew as
+/// it tilts: x = H M s, so H has M s of them, whatever M is.
+Vec3 along_edges(const Cell& cell, const Vec3& x) { return cell.basis() * cell.fractions(x); }
+
 /// Which image of j a contact of i is with.
 Images image_of(const Touch& c, const View& view) {
   const Quad &a = view.grains().place[c.i], &b = view.grains().place[c.j];
   const Vec3 edges =
-      view.cell().fractions({a.x - b.x - c.branch[0], a.y - b.y - c.branch[1], a.z - b.z - c.branch[2]});
+      along_edges(view.cell(), {a.x - b.x - c.branch[0], a.y - b.y - c.branch[1], a.z - b.z - c.branch[2]});
   Images image{};
   for (std::size_t k = 0; k < 3; ++k) image[k] = static_cast<int>(std::lround(edges[k]));
   return image;
 }
 
-/// Extents of all clusters as fractions of the edges of the box, centre to centre.
+/// Extents of all clusters as fractions of the edges H, centre to centre.
 std::vector<Vec3> extents(Clusters& clusters, const View& view) {
   const Grains& grains = view.grains();
   constexpr double far = std::numeric_limits<double>::infinity();
@@ -89,7 +94,7 @@ std::vector<Vec3> extents(Clusters& clusters, const View& view) {
   for (std::uint32_t i = 0; i < grains.count(); ++i) {
     const auto [root, image] = clusters.find(i);
     const Quad& x = grains.place[i];
-    const Vec3 place = view.cell().fractions({x.x, x.y, x.z});
+    const Vec3 place = along_edges(view.cell(), {x.x, x.y, x.z});
     for (std::size_t c = 0; c < 3; ++c) {
       const double at = place[c] + image[c];
       low[root][c] = std::min(low[root][c], at);
@@ -101,34 +106,46 @@ std::vector<Vec3> extents(Clusters& clusters, const View& view) {
   return low;
 }
 
+/// The largest cluster, none of one grain: which edges it percolates along, and its extents.
+struct Largest {
+  std::uint32_t grains = 1;
+  std::array<bool, 3> wraps{};
+  Vec3 extent{};
+
+  int axes() const { return wraps[0] + wraps[1] + wraps[2]; }
+  /// Of two as large the one that percolates along more axes, along x rather than y rather than z, or the
+  /// more extended: whole numbers first, so that rounding and the order of the grains hardly choose.
+  auto rank() const { return std::tuple(grains, axes(), wraps, extent[0] + extent[1] + extent[2]); }
+};
+
+Largest largest_of(Clusters& clusters, const View& view) {
+  const std::vector<Vec3> extent = extents(clusters, view);
+  Largest best;
+  for (std::uint32_t i = 0; i < extent.size(); ++i) {
+    if (clusters.find(i).root != i || clusters.size(i) < 2) continue;
+    Largest other{clusters.size(i), clusters.wraps(i), extent[i]};
+    for (double& part : other.extent) part = std::min(part, 1.0);
+    if (other.rank() > best.rank()) best = other;
+  }
+  return best;
+}
+
 }  // namespace
 
-std::array<double, 4> Percolation::values(const View& view) const {
-  const std::size_t count = view.grains().count();
+std::array<double, 7> Percolation::values(const View& view) const {
   const double threshold = strong * view.network.mean_force;
-  if (!(threshold > 0)) return {0, 0, 0, 0};  // no contacts, or none that bear
-  Clusters clusters(count);
+  if (!(threshold > 0)) return {};  // no contacts, or none that bear
+  Clusters clusters(view.grains().count());
   for (const Touch& c : view.network.contacts)
     if (c.force >= threshold) clusters.join(c.i, c.j, image_of(c, view));
-  const std::vector<Vec3> extent = extents(clusters, view);
-  std::uint32_t largest = 0;  // the more extended of two as large, whatever the order of the grains
-  std::pair<std::uint32_t, double> best{0, -1};
-  std::array<double, 4> result{};
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (clusters.find(i).root != i || clusters.size(i) < best.first) continue;
-    std::array<double, 4> xi{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      const bool wraps = clusters.wraps(i)[c];
-      xi[c] = wraps ? 1 : std::min(extent[i][c], 1.0);
-      xi[3] += wraps ? 1 : 0;
-    }
-    const std::pair<std::uint32_t, double> rank{clusters.size(i), xi[3] * 3 + xi[0] + xi[1] + xi[2]};
-    if (rank <= best) continue;
-    best = rank;
-    largest = i;
-    result = xi;
+  const Largest largest = largest_of(clusters, view);
+  std::array<double, 7> result{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    result[c] = largest.wraps[c] ? 1 : largest.extent[c];
+    result[4 + c] = largest.wraps[c] ? 1 : 0;
   }
-  return clusters.size(largest) > 1 ? result : std::array<double, 4>{};
+  result[3] = largest.axes();
+  return result;
 }
 
 }  // namespace grainlaw::dem::observe

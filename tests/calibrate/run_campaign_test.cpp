@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "campaign_examples.hpp"
+#include "grainlaw/calibrate/kept_record.hpp"
 #include "grainlaw/dem/files/snapshot.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
@@ -414,6 +415,14 @@ TEST_F(RunCampaign, AKeptRecordMustBeWholeAndOfItsScene) {
       }),
       AllOf(HasSubstr("iso-s1/snapshots.h5"), HasSubstr("; remove " + (records / "iso-s1").string())));
   EXPECT_TRUE(ran.empty());
+}
+
+// Whether the strong forces percolate along an axis, these records do not tell: it came later.
+TEST(KeptRecord, OfAnEarlierVersionLacksTheColumnsThatCameSince) {
+  const fs::path dir = GRAINLAW_DATA_DIR "/records/near-jamming/sj-0.73-0.6585-s4";
+  const Json scene = load_json(dir / "scene.json");
+  ASSERT_FALSE(Record::read_csv(dir / "record.csv", {"xi_x", "percolating"}).has("percolates_x"));
+  EXPECT_NO_THROW(check_kept_record(dir, scene));
 }
 
 }  // namespace

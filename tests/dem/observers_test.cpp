@@ -15,6 +15,7 @@ namespace grainlaw::dem {
 namespace {
 
 using observe::Observers;
+using testing::DoubleEq;
 
 Material elastic() {
   Material m;
@@ -30,15 +31,18 @@ SignConvention d2_signs() {
   return SignConvention({leg});
 }
 
-/// What `observers` say of a state, by column; nothing is measured for them but what they say they read.
-std::map<std::string, double> see(Observers& observers, const Material& m, const State& state) {
-  const Dynamics dynamics(m, state);
+/// What `observers` say of grains, by column; nothing is measured for them but what they say they read.
+std::map<std::string, double> see(Observers& observers, const Material& m, const Dynamics& dynamics) {
   const auto values = observers.observe(dynamics, dynamics.velocities(), dynamics.measure(observers.reads()),
                                         m, d2_signs(), 0, 0);
   EXPECT_EQ(values.size(), observers.columns().size());
   std::map<std::string, double> by_column;
   for (std::size_t k = 0; k < values.size(); ++k) by_column[observers.columns()[k]] = values[k];
   return by_column;
+}
+
+std::map<std::string, double> see(Observers& observers, const Material& m, const State& state) {
+  return see(observers, m, Dynamics(m, state));
 }
 
 std::map<std::string, double> see(const Material& m, const State& state) {
@@ -82,6 +86,53 @@ TEST(Observers, EqualForcesAreOneBinOfTheDistributions) {
   }
 }
 
+/// A pair of unit grains: how deep they overlap, mm, and how fast they close, mm/us.
+struct Pair {
+  double overlap, closing;
+};
+
+/// Sixteen pairs alike and four others, far from each other. Forces 1e5 overlap + 1000 closing are 400 (16
+/// times), 2200, 3800, -1000 and 28600, their mean 2000; the mean overlap is 0.027.
+State twenty_pairs() {
+  std::vector<Pair> pairs(16, {0.01, -0.6});
+  pairs.insert(pairs.end(), {{0.03, -0.8}, {0.03, 0.8}, {0.02, -3}, {0.3, -1.4}});
+  State state;
+  state.box = Mat3::diagonal({10, 20, 20});
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const double y = 2 + 4 * static_cast<double>(p % 5), z = 2 + 4 * static_cast<double>(p / 5);
+    state.position.insert(state.position.end(), {{2, y, z}, {4 - pairs[p].overlap, y, z}});
+    state.velocity.insert(state.velocity.end(), {{pairs[p].closing, 0, 0}, {0, 0, 0}});
+    state.radius.insert(state.radius.end(), 2, 1);
+  }
+  return state;
+}
+
+/// P of the bins that are not empty: so many contacts over 20 * 0.1.
+std::map<std::size_t, double> filled_bins(const std::string& name) {
+  const Record table = table_of(name, Material{}, twenty_pairs());
+  std::map<std::size_t, double> filled;
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    EXPECT_DOUBLE_EQ(table["x"][k], 0.1 * static_cast<double>(k));
+    if (table["count"][k] > 0) filled[k] = table["P"][k];
+    EXPECT_DOUBLE_EQ(table["count"][k], 2 * table["P"][k]) << name << " " << k;
+  }
+  return filled;
+}
+
+TEST(Observers, ForcesByHand) {
+  // f/<f>: 0.2, 1.1, 1.9, and outside -0.5 and 14.3
+  EXPECT_THAT(filled_bins("force_distribution"),
+              testing::ElementsAre(testing::Pair(2, DoubleEq(8)), testing::Pair(11, DoubleEq(0.5)),
+                                   testing::Pair(19, DoubleEq(0.5))));
+}
+
+TEST(Observers, OverlapsByHand) {
+  // delta/<delta>: 0.370, 0.741, 1.111, and outside 11.1
+  EXPECT_THAT(filled_bins("overlap_distribution"),
+              testing::ElementsAre(testing::Pair(4, DoubleEq(8)), testing::Pair(7, DoubleEq(0.5)),
+                                   testing::Pair(11, DoubleEq(1))));
+}
+
 TEST(Observers, RattlersAreLeftOutOfPartnersToo) {
   // A crystal with one small grain that three of its grains hold: those three have 13 contacts.
   State state = test::crystal(0.99, 0);
@@ -97,9 +148,9 @@ TEST(Observers, RattlersAreLeftOutOfPartnersToo) {
 
 /// A state of unit grains: `strong` in a row from `begin` by `step`, overlapping by 0.1, and far away thirty
 /// pairs that hardly touch, so that the forces in the row are more than 2.2 times the mean.
-State row_of_grains(std::size_t strong, const Vec3& begin, const Vec3& step, const Vec3& box) {
+State row_of_grains(std::size_t strong, const Vec3& begin, const Vec3& step, const Mat3& box) {
   State state;
-  state.box = Mat3::diagonal(box);
+  state.box = box;
   const auto put = [&](const Vec3& x) {
     state.position.push_back(x);
     state.velocity.push_back({});
@@ -117,34 +168,193 @@ State row_of_grains(std::size_t strong, const Vec3& begin, const Vec3& step, con
   return state;
 }
 
-void expect_spans(const State& state, const std::array<double, 3>& xi, double percolating) {
-  const auto seen = see(elastic(), state);
-  EXPECT_NEAR(seen.at("xi_x"), xi[0], 1e-12);
-  EXPECT_NEAR(seen.at("xi_y"), xi[1], 1e-12);
-  EXPECT_NEAR(seen.at("xi_z"), xi[2], 1e-12);
-  EXPECT_EQ(seen.at("percolating"), percolating);
+State row_of_grains(std::size_t strong, const Vec3& begin, const Vec3& step, const Vec3& box) {
+  return row_of_grains(strong, begin, step, Mat3::diagonal(box));
+}
+
+using Directions = std::array<int, 3>;
+
+void expect_spans(const std::map<std::string, double>& seen, const Vec3& xi, const Directions& percolates) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::string axis(1, "xyz"[c]);
+    EXPECT_NEAR(seen.at("xi_" + axis), xi[c], 1e-12) << axis;
+    EXPECT_EQ(seen.at("percolates_" + axis), percolates[c]) << axis;
+  }
+  EXPECT_EQ(seen.at("percolating"), percolates[0] + percolates[1] + percolates[2]);
+}
+
+void expect_spans(const State& state, const Vec3& xi, const Directions& percolates) {
+  expect_spans(see(elastic(), state), xi, percolates);
 }
 
 TEST(Percolation, AStraightChainThroughTheBox) {
-  expect_spans(row_of_grains(10, {5, 5, 5}, {1.9, 0, 0}, {19, 19, 30}), {1, 0, 0}, 1);
+  expect_spans(row_of_grains(10, {5, 5, 5}, {1.9, 0, 0}, {19, 19, 30}), {1, 0, 0}, {1, 0, 0});
   // one grain is missing: nine in a row, through the face of the box
-  expect_spans(row_of_grains(9, {12, 5, 5}, {1.9, 0, 0}, {19, 19, 30}), {8 * 1.9 / 19, 0, 0}, 0);
+  expect_spans(row_of_grains(9, {12, 5, 5}, {1.9, 0, 0}, {19, 19, 30}), {8 * 1.9 / 19, 0, 0}, {0, 0, 0});
 }
 
 TEST(Percolation, AlongEachAxis) {
-  expect_spans(row_of_grains(10, {5, 5, 5}, {0, 1.9, 0}, {19, 19, 30}), {0, 1, 0}, 1);
-  expect_spans(row_of_grains(15, {17.5, 9.5, 1}, {0, 0, -1.9}, {19, 19, 28.5}), {0, 0, 1}, 1);
+  expect_spans(row_of_grains(10, {5, 5, 5}, {0, 1.9, 0}, {19, 19, 30}), {0, 1, 0}, {0, 1, 0});
+  expect_spans(row_of_grains(15, {17.5, 9.5, 1}, {0, 0, -1.9}, {19, 19, 28.5}), {0, 0, 1}, {0, 0, 1});
 }
 
 TEST(Percolation, ADiagonalChainRunsAlongTwoAxes) {
   const double step = 1.9 / std::sqrt(2.0);
-  expect_spans(row_of_grains(14, {1, 3, 5}, {step, step, 0}, {14 * step, 14 * step, 30}), {1, 1, 0}, 2);
+  expect_spans(row_of_grains(14, {1, 3, 5}, {step, step, 0}, {14 * step, 14 * step, 30}), {1, 1, 0},
+               {1, 1, 0});
 }
 
 TEST(Percolation, AChainLongerThanTheBoxThatMissesItselfDoesNotPercolate) {
   // After a turn around x it has moved 3 along y.
   const Vec3 step{1.8735, 0.3, 0.1};  // of length 1.9 or so
-  expect_spans(row_of_grains(14, {1, 3, 5}, step, {19, 19, 30}), {1, 13 * 0.3 / 19, 13 * 0.1 / 30}, 0);
+  expect_spans(row_of_grains(14, {1, 3, 5}, step, {19, 19, 30}), {1, 13 * 0.3 / 19, 13 * 0.1 / 30},
+               {0, 0, 0});
+}
+
+/// A box of 19 x 19 x 30 after simple shear: x flows, y is the gradient.
+Mat3 sheared_box(double gamma) { return {{19, 19 * gamma, 0}, {0, 19, 0}, {0, 0, 30}}; }
+
+/// A row as long as so many edges of this box, without the last `missing` of the grains that close it.
+State row_along(const Vec3& edges, const Mat3& box, std::size_t missing = 0) {
+  const Vec3 way = box * edges;
+  const double grains = std::ceil(norm(way) / 1.92);
+  const Vec3 step{way[0] / grains, way[1] / grains, way[2] / grains};
+  return row_of_grains(static_cast<std::size_t>(grains) - missing, {9.5, 9.5, 5}, step, box);
+}
+
+// The cell counts images in edges that it chooses anew, in simple shear at gamma = 0.5, 1.5 ...
+TEST(Percolation, ARowThatShearsWithTheBoxPercolatesAsBefore) {
+  for (int n = -24; n <= 24; ++n) {
+    const double gamma = n / 20.0;
+    SCOPED_TRACE(gamma);
+    const Mat3 box = sheared_box(gamma);
+    expect_spans(row_along({1, 0, 0}, box), {1, 0, 0}, {1, 0, 0});
+    expect_spans(row_along({0, 1, 0}, box), {0, 1, 0}, {0, 1, 0});
+    expect_spans(row_along({0, 0, 1}, box), {0, 0, 1}, {0, 0, 1});
+    expect_spans(row_along({1, 1, 0}, box), {1, 1, 0}, {1, 1, 0});
+    const State open = row_along({0, 1, 0}, box, 1);
+    const double grains = static_cast<double>(open.count()) - 60;
+    expect_spans(open, {0, (grains - 1) / (grains + 1), 0}, {0, 0, 0});
+  }
+  EXPECT_EQ(Cell(sheared_box(0.45)).basis(), Mat3::identity());
+  EXPECT_NE(Cell(sheared_box(0.55)).basis(), Mat3::identity());
+}
+
+TEST(Percolation, StraightUpInABoxThatLeansIsAlongBothEdges) {
+  // Straight up is once along the second edge and once back along the first.
+  expect_spans(row_of_grains(10, {9.5, 9.5, 5}, {0, 1.9, 0}, sheared_box(1)), {1, 1, 0}, {1, 1, 0});
+  expect_spans(row_of_grains(10, {9.5, 9.5, 5}, {0, 1.9, 0}, sheared_box(0)), {0, 1, 0}, {0, 1, 0});
+}
+
+/// A contact, found by trying images up to two edges H away: of i with the image of j moved by `image`.
+struct Met {
+  std::size_t i, j;
+  std::array<int, 3> image;
+  Vec3 branch;
+  double overlap;
+};
+
+std::vector<Met> contacts_of(const State& state) {
+  std::vector<Met> list;
+  for (std::size_t i = 0; i < state.count(); ++i)
+    for (std::size_t j = i + 1; j < state.count(); ++j)
+      for (int n = 0; n < 125; ++n) {
+        const std::array<int, 3> image{n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2};
+        const Vec3 away = state.box * Vec3{1.0 * image[0], 1.0 * image[1], 1.0 * image[2]};
+        Vec3 branch;
+        for (std::size_t c = 0; c < 3; ++c) branch[c] = state.position[i][c] - state.position[j][c] - away[c];
+        const double overlap = state.radius[i] + state.radius[j] - norm(branch);
+        if (overlap >= 0) list.push_back({i, j, image, branch, overlap});
+      }
+  return list;
+}
+
+/// Which edges H the largest cluster of strong contacts, without viscosity, percolates along: grains are
+/// given images until no contact wants another, and what contradicts them are the ways around.
+Directions directions_by_brute_force(const State& state) {
+  std::vector<Met> strong = contacts_of(state);
+  double mean = 0;
+  for (const Met& c : strong) mean += c.overlap / static_cast<double>(strong.size());
+  std::erase_if(strong, [&](const Met& c) { return c.overlap < 2.2 * mean; });
+  std::size_t largest = 0;
+  Directions result{};
+  std::vector<bool> seen(state.count(), false);
+  for (std::size_t first = 0; first < state.count(); ++first) {
+    if (seen[first]) continue;
+    std::map<std::size_t, std::array<int, 3>> place{{first, {}}};
+    Directions around{};
+    for (std::size_t before = 0; before != place.size();) {
+      before = place.size();
+      for (const Met& c : strong) {
+        std::array<int, 3> there;
+        const bool i = place.contains(c.i), j = place.contains(c.j);
+        for (std::size_t k = 0; k < 3; ++k) {
+          if (i) there[k] = place[c.i][k] + c.image[k];
+          if (!i && j) there[k] = place[c.j][k] - c.image[k];
+          if (i && j) around[k] |= there[k] != place[c.j][k] ? 1 : 0;
+        }
+        if (i != j) place[i ? c.j : c.i] = there;
+      }
+    }
+    for (const auto& [grain, image] : place) seen[grain] = true;
+    if (place.size() > largest) result = around;
+    largest = std::max(largest, place.size());
+  }
+  return result;
+}
+
+/// 125 places, 1.9 apart along x, y and z, in a box of which the second edge leans by `lean` of them: some
+/// hold a unit grain, so that neighbours overlap by 0.1, the others three tiny grains that hardly touch.
+State random_places(int lean, Random& random) {
+  const double apart = 1.9;
+  State state;
+  state.box = apart * Mat3{{5, 1.0 * lean, 0}, {0, 5, 0}, {0, 0, 5}};
+  for (int n = 0; n < 125; ++n) {
+    const bool large = random.uniform() < 0.35;
+    for (int k = 0; k < (large ? 1 : 3); ++k) {
+      const double along = n % 5 + n / 5 % 5 * lean / 5.0;  // of the first edge; may be beside a place
+      const double up = apart * (n / 25) + 0.0999 * k;
+      state.position.push_back({apart * std::floor(along), apart * (n / 5 % 5), up});
+      state.velocity.push_back({});
+      state.radius.push_back(large ? 1 : 0.05);
+    }
+  }
+  return state;
+}
+
+TEST(Percolation, OfRandomNetworksByBruteForce) {
+  std::map<Directions, int> met;
+  Random random(5);
+  for (int n = 0; n < 32; ++n) {
+    SCOPED_TRACE(n);
+    const State state = random_places(n % 8, random);  // gamma from 0 to 1.4
+    const auto seen = see(elastic(), state);
+    const Directions here{static_cast<int>(seen.at("percolates_x")),
+                          static_cast<int>(seen.at("percolates_y")),
+                          static_cast<int>(seen.at("percolates_z"))};
+    EXPECT_EQ(here, directions_by_brute_force(state));
+    ++met[here];
+  }
+  EXPECT_GE(met.size(), 5u);  // of the eight answers
+}
+
+// Lists are renewed, and the edges in which images are counted chosen anew, between rows of one path.
+TEST(Percolation, ARenewalOfListsChangesNothing) {
+  const Mat3 before = sheared_box(0.499), after = sheared_box(0.501);
+  const double dt = 0.02;
+  const Mat3 gradient{{0, 0.002 / dt, 0}, {0, 0, 0}, {0, 0, 0}};
+  for (const State& state : {row_along({0, 1, 0}, before), row_along({1, 1, 0}, before)}) {
+    Dynamics old(elastic(), state);
+    old.start_flow(dt, gradient);
+    old.step(after, gradient);
+    const Dynamics renewed(elastic(), old.state());
+    ASSERT_EQ(old.cell().basis(), Mat3::identity());
+    ASSERT_NE(renewed.cell().basis(), Mat3::identity());
+    Observers percolation({"percolation"});
+    const auto was = see(percolation, elastic(), old), is = see(percolation, elastic(), renewed);
+    for (const auto& [column, value] : was) EXPECT_NEAR(is.at(column), value, 1e-12) << column;
+    EXPECT_GT(was.at("percolating"), 0);
+  }
 }
 
 TEST(Observers, OneContactIsWhollyUnbalanced) {
@@ -196,26 +406,41 @@ TEST(Observers, NoContactOfTheLastRowIsSeenInTheNext) {
   }
 }
 
+/// sqrt(3 J2), with the sign of Q_yy - Q_xx.
+double d2_deviator(const Mat3& q) {
+  const double mean = (q(0, 0) + q(1, 1) + q(2, 2)) / 3;
+  double squares = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < 3; ++b) squares += std::pow(q(a, b) - (a == b ? mean : 0), 2);
+  return std::copysign(std::sqrt(1.5 * squares), q(1, 1) - q(0, 0));
+}
+
 TEST(Observers, RadiusAgainstContactsByBruteForce) {
   const Material m = elastic();
   const State state = test::squeezed(m, 300, 31, 0.75);
   const Record table = table_of("radius", m, state);
-  const auto contacts = test::brute_force(state);
   std::vector<double> count(300, 0), overlap(300, 0);
-  for (const auto& [i, j, delta] : contacts)
-    for (const auto g : {i, j}) {
+  std::vector<Mat3> normals(300);  // sum of n n of each grain
+  for (const Met& c : contacts_of(state))
+    for (const auto g : {c.i, c.j}) {
       ++count[g];
-      overlap[g] += delta;
+      overlap[g] += c.overlap;
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b)
+          normals[g](a, b) += c.branch[a] * c.branch[b] / dot(c.branch, c.branch);
     }
   const auto [least, most] = std::minmax_element(state.radius.begin(), state.radius.end());
   for (std::size_t k = 0; k < 20; ++k) {
-    double grains = 0, touching = 0, sum = 0, bearing = 0, held = 0;
+    double grains = 0, touching = 0, sum = 0, bearing = 0, held = 0, volume = 0;
+    Mat3 fabric;  // sum of V_p n n
     for (std::size_t i = 0; i < 300; ++i) {
       const double sc = (state.radius[i] - *least) / (*most - *least);
       if (std::min<double>(19, std::floor(sc * 20)) != static_cast<double>(k)) continue;
       ++grains;
       touching += count[i];
       sum += overlap[i];
+      volume += sphere_volume(state.radius[i]);
+      fabric = fabric + sphere_volume(state.radius[i]) * normals[i];
       if (count[i] >= 4) {
         ++bearing;
         held += count[i];
@@ -227,6 +452,7 @@ TEST(Observers, RadiusAgainstContactsByBruteForce) {
     EXPECT_NEAR(table["overlap"][k], sum / touching, 1e-12);
     ASSERT_GT(bearing, 0);
     EXPECT_NEAR(table["C_star"][k], held / bearing, 1e-12);
+    EXPECT_NEAR(table["F_dev"][k], d2_deviator(state.volume_fraction() / volume * fabric), 1e-12);
   }
 }
 
@@ -319,7 +545,12 @@ TEST_F(ObserversInvariance, AxisSwap) {
     other.velocity[i] = {state.velocity[i][1], state.velocity[i][2], state.velocity[i][0]};
   }
   other.box = Mat3::diagonal({state.box(1, 1), state.box(2, 2), state.box(0, 0)});
-  std::map<std::string, std::string> names{{"xi_x", "xi_z"}, {"xi_y", "xi_x"}, {"xi_z", "xi_y"}};
+  std::map<std::string, std::string> names{{"xi_x", "xi_z"},
+                                           {"xi_y", "xi_x"},
+                                           {"xi_z", "xi_y"},
+                                           {"percolates_x", "percolates_z"},
+                                           {"percolates_y", "percolates_x"},
+                                           {"percolates_z", "percolates_y"}};
   for (const std::string q : {"k", "F0"}) {
     const std::pair<const char*, const char*> pairs[] = {{"xx", "zz"}, {"yy", "xx"}, {"zz", "yy"},
                                                          {"yz", "xy"}, {"xz", "yz"}, {"xy", "xz"}};
@@ -355,6 +586,12 @@ TEST(Observers, NoneCostsNoColumn) {
   EXPECT_TRUE(observe::tables({}).empty());
   EXPECT_THAT(observe::columns({"nonaffine", "contacts"}),
               testing::ElementsAre("C_r", "C_star_p", "phi_r", "D2_min"));
+}
+
+TEST(Observers, RecordsOfAnEarlierVersionKnowPercolationByItsCountAlone) {
+  EXPECT_THAT(observe::lasting_columns({"percolation", "overlap"}),
+              testing::ElementsAre("overlap", "xi_x", "xi_y", "xi_z", "percolating"));
+  EXPECT_EQ(observe::lasting_columns({"contacts", "radius"}), observe::columns({"contacts", "radius"}));
 }
 
 }  // namespace
