@@ -9,6 +9,7 @@
 #include <functional>
 #include <regex>
 
+#include "grainlaw/dem/run/element_test.hpp"
 #include "grainlaw/element/error.hpp"
 #include "grainlaw/element/file.hpp"
 #include "grainlaw/element/json.hpp"
@@ -377,6 +378,40 @@ TEST_F(ReportTest, NamesItsOwnBuildAndRecordsOfOthers) {
   EXPECT_THAT(page().text,
               HasSubstr("Warning: records were made with different instruction sets: sse2 (1 run), "
                         "AVX2 (17 runs)."));
+}
+
+// Sixty grains sheared to and fro so fast that they fly: what their run warned of, and in how many of its
+// rows, stands in the report; of jammed ones that are sheared more slowly it says nothing like it.
+TEST_F(ReportTest, WarnsOfARateThatMakesGrainsFly) {
+  const auto run = [&](const std::string& name, const std::string& nu, const std::string& rate) {
+    const auto shear = [&](const std::string& amount) {
+      return R"({"mode": "d2", "amount": )" + amount + R"(, "rate": )" + rate + "}";
+    };
+    const std::string scene =
+        R"({"preparation": {"count": 60, "rate": 1e-2, "relax": {"duration": 10}, "nu": )" + nu +
+        R"(}, "measure": {"rows": 10}, "path": {"segments": [{"repeat": 3, "segments": [)" + shear("0.4") +
+        ", " + shear("-0.4") + "]}]}}";
+    dem::run_element_test(dem::Scene::read(Reader(parse_json(scene, "scene.json"), "scene.json"), ""),
+                          dir_ / "records" / name);
+  };
+  run("fast", "0.55", "0.3");
+  run("slow", "0.75", "0.003");
+  const Record record = Record::read_csv(dir_ / "records/fast/record.csv");
+  int bearing = 0, flying = 0;
+  for (std::size_t i = 0; i < record.rows(); ++i) {
+    if (!(record["P"][i] >= 1e-3)) continue;  // load-bearing
+    ++bearing;
+    if (record["Ek_over_Ep"][i] > 1) ++flying;
+  }
+  ASSERT_GT(flying, 0);
+  const std::string warning = "fast: Ek/Ep is above 1 in " + std::to_string(flying) + " of " +
+                              std::to_string(bearing) + " load-bearing rows: the grains fly";
+  const auto parsed = page();
+  EXPECT_THAT(parsed.problems, IsEmpty());
+  EXPECT_THAT(parsed.ids, Contains("warnings"));
+  EXPECT_THAT(parsed.links, Contains("#warnings"));
+  EXPECT_THAT(parsed.text, HasSubstr(warning));
+  EXPECT_THAT(parsed.text, Not(HasSubstr("slow: Ek/Ep is above 1 in")));
 }
 
 TEST_F(ReportTest, ExplainsItsSymbols) {
