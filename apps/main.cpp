@@ -10,6 +10,7 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -76,13 +77,13 @@ std::string listed(const std::vector<std::string>& names) {
 /// The end of a complaint about `given`.
 std::string hint(const std::string& given, const std::vector<std::string>& known) {
   const std::string near = nearest_word(given, known);
-  return near.empty() ? "" : ", did you mean " + near + "?";
+  return near.empty() ? "" : " (did you mean " + near + "?)";
 }
 
-/// The command that was named last: `bench dem` of `grainlaw bench dem --grains 9261`.
-const CLI::App& last_command(const CLI::App& program) {
-  const auto chosen = program.get_subcommands();
-  return chosen.empty() ? program : last_command(*chosen.back());
+/// `bench` of `grainlaw bench dem`, and `dem` of `bench`.
+const CLI::App* chosen_in(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? nullptr : chosen.front();
 }
 
 std::vector<std::string> option_names(const CLI::App& command) {
@@ -93,18 +94,38 @@ std::vector<std::string> option_names(const CLI::App& command) {
 }
 
 bool looks_like_option(const std::string& word) {
-  return word.size() > 1 && word[0] == '-' &&
-         (word[1] == '-' || std::isalpha(static_cast<unsigned char>(word[1])));
+  return word.starts_with("--")
+             ? word.size() > 2
+             : word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0;
 }
 
-/// What is wrong with a command line.
-std::string reason(const CLI::App& program, const CLI::ParseError& error) {
-  for (const std::string& left : program.remaining(true))
-    if (const std::string name = left.substr(0, left.find('=')); looks_like_option(name))
-      return fmt::format("unknown option {}{}", name, hint(name, option_names(last_command(program))));
-  const auto chosen = program.get_subcommands();
-  if (!chosen.empty() && chosen.front()->get_subcommands().empty())
-    if (const auto known = commands_of(*chosen.front()); !known.empty())
+/// Whether `command`, or one within it that was named, has an option of this name.
+bool has_option(const CLI::App* command, const std::string& name) {
+  if (command == nullptr) return false;
+  const std::vector<std::string> known = option_names(*command);
+  return std::find(known.begin(), known.end(), name) != known.end() || has_option(chosen_in(*command), name);
+}
+
+/// What is wrong with an option that was left over; empty where none was.
+std::string unknown_option(const CLI::App& program) {
+  for (const CLI::App* app = &program; app != nullptr; app = chosen_in(*app))
+    for (const std::string& left : app->remaining()) {
+      const std::string name = left.substr(0, left.find('='));
+      if (!looks_like_option(name)) continue;
+      const CLI::App* const within = chosen_in(*app);
+      if (has_option(within, name))
+        return fmt::format("option {} must stand behind {}", name, within->get_name());
+      return fmt::format("unknown option {}{}", name, hint(name, option_names(*app)));
+    }
+  return "";
+}
+
+/// What is wrong with a command line; `literal`: some of its words stand behind "--" and are no options.
+std::string reason(const CLI::App& program, const CLI::ParseError& error, bool literal) {
+  if (const std::string unknown = literal ? "" : unknown_option(program); !unknown.empty()) return unknown;
+  const CLI::App* const chosen = chosen_in(program);
+  if (chosen != nullptr && chosen_in(*chosen) == nullptr)
+    if (const auto known = commands_of(*chosen); !known.empty())
       return fmt::format("must be followed by one of {}", listed(known));
   return error.what();
 }
@@ -121,15 +142,16 @@ int run_command_line(int argc, char** argv) {
   const std::vector<std::string> known = commands_of(program);
   if (const std::string name = argc > 1 ? argv[1] : "-";
       name[0] != '-' && std::find(known.begin(), known.end(), name) == known.end())
-    return complain_usage(program, fmt::format("unknown command \"{}\"{}; known are {}", name,
-                                               hint(name, known), listed(known)));
+    return complain_usage(program, fmt::format("unknown command \"{}\"; known are {}{}", name, listed(known),
+                                               hint(name, known)));
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
     write_stdout(success.get_name() == "CallForVersion" ? success.what() : program.help());
     return all_well;
   } catch (const CLI::ParseError& error) {
-    return complain_usage(program, reason(program, error));
+    const bool literal = std::find(argv, argv + argc, std::string_view("--")) != argv + argc;
+    return complain_usage(program, reason(program, error, literal));
   }
   const auto commands = program.get_subcommands([](const CLI::App*) { return true; });
   for (std::size_t i = 0; i < commands.size(); ++i)

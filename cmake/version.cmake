@@ -1,12 +1,11 @@
-# Version, commit and options of the build, for element/version.cpp alone: a new commit compiles that one file and links
-# again.
+# Version, commit and options of the build, for element/version.cpp alone: a new commit, or another change of a source,
+# compiles that one file and links again.
 #
 # Included by CMakeLists.txt, this defines grainlaw_version(target). Run as a script (cmake -P) at every build, it writes
 # OUTPUT, and only if its text has changed.
 
 if(CMAKE_SCRIPT_MODE_FILE)
   set(commit unknown)
-  set(build "${OPTIONS}")
   find_program(git git)
   if(git)
     # A source tree without history may lie inside someone else's repository: that one's commit is not ours.
@@ -25,10 +24,23 @@ if(CMAKE_SCRIPT_MODE_FILE)
                         OUTPUT_VARIABLE changes ERROR_QUIET)
         if(changes)
           string(APPEND commit -dirty)
-          execute_process(COMMAND ${git} --no-optional-locks -C ${SOURCE} diff HEAD OUTPUT_VARIABLE changes ERROR_QUIET)
+        endif()
+        # Of what is compiled, new files among it.
+        set(rooms cmake CMakeLists.txt apps calibrate dem element model)
+        execute_process(COMMAND ${git} --no-optional-locks -C ${SOURCE} diff --no-ext-diff --no-textconv --no-color HEAD
+                                -- ${rooms} OUTPUT_VARIABLE changes ERROR_QUIET)
+        execute_process(COMMAND ${git} -C ${SOURCE} ls-files --others --exclude-standard -- ${rooms}
+                        OUTPUT_VARIABLE new_files OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+        if(new_files)
+          string(REPLACE "\n" ";" new_files "${new_files}")
+          foreach(new_file IN LISTS new_files)
+            file(SHA1 "${SOURCE}/${new_file}" hash_of_file)
+            string(APPEND changes "${new_file} ${hash_of_file}\n")
+          endforeach()
+        endif()
+        if(changes)
           string(SHA1 changes "${changes}")
           string(SUBSTRING ${changes} 0 8 changes)
-          string(APPEND build ", changes ${changes}")
         endif()
       endif()
     endif()
@@ -55,7 +67,7 @@ namespace grainlaw::build_info {
 
 inline constexpr const char* version = "@VERSION@";
 inline constexpr const char* commit = "@commit@";
-inline constexpr const char* build = R"build(@build@)build";
+inline constexpr const char* changes = "@changes@";
 
 }  // namespace grainlaw::build_info
 ]])
@@ -67,14 +79,15 @@ function(grainlaw_version target)
   set(folder ${PROJECT_BINARY_DIR}/build_info)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
   get_directory_property(options COMPILE_OPTIONS)
-  string(JOIN " " options ${CMAKE_BUILD_TYPE} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${options})
+  string(JOIN " " options ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${options})
   if(GRAINLAW_BATCHES)
     string(APPEND options " in batches")
   endif()
+  string(REPLACE "\"" "'" options "${options}")
+  set_property(SOURCE version.cpp PROPERTY COMPILE_DEFINITIONS "GRAINLAW_BUILD_OPTIONS=\"$<CONFIG> ${options}\"")
   add_custom_target(grainlaw_build_info
                     COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
                             -DOUTPUT=${folder}/grainlaw_build_info.hpp
-                            "-DOPTIONS=${options}"
                             -P ${PROJECT_SOURCE_DIR}/cmake/version.cmake
                     BYPRODUCTS ${folder}/grainlaw_build_info.hpp
                     COMMENT "Looking up the commit" VERBATIM)

@@ -35,19 +35,38 @@ std::string hint_at(std::string_view text, std::size_t byte) {
   return "";
 }
 
-/// The number that a message of the parser quotes as one that no double holds; empty where it quotes none.
-std::string too_large_number(std::string_view message) {
-  constexpr std::string_view before = "number overflow parsing '";
-  const auto at = message.find(before);
-  if (at == std::string_view::npos) return "";
-  const std::string_view rest = message.substr(at + before.size());
-  return std::string(rest.substr(0, rest.find('\'')));
+/// Finds where reading ends that cannot go on; keeps nothing of what it read.
+class Failure : public nlohmann::json_sax<Json> {
+ public:
+  std::size_t byte = 0;
+  std::string token;
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t at, const std::string& last, const Json::exception&) override {
+    byte = at;
+    token = last;
+    return false;
+  }
+};
+
+std::string shortened(const std::string& text) {
+  return text.size() <= 60 ? text : text.substr(0, 57) + "...";
 }
 
 /// A value as it stands in the file, shortened for a message.
 std::string shown(const Json& value) {
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return text.size() <= 60 ? text : text.substr(0, 57) + "...";
+  return shortened(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 /// What a number should have been: "> 0", or "a number > 0" where the value is none.
@@ -81,11 +100,12 @@ Json parse_json(std::string_view text, const std::string& file) {
     throw Error(file, "",
                 "line " + std::to_string(line_of(text, error.byte)) + " is not valid JSON" +
                     hint_at(text, error.byte));
-  } catch (const Json::out_of_range& error) {
-    const std::string number = too_large_number(error.what());
+  } catch (const Json::out_of_range&) {  // of a number
+    Failure failure;
+    Json::sax_parse(text, &failure);
     throw Error(file, "",
-                "line " + std::to_string(line_of(text, text.find(number))) +
-                    ": a number must be finite, got " + number);
+                "line " + std::to_string(line_of(text, failure.byte)) + ": a number must be finite, got " +
+                    shortened(failure.token));
   } catch (const Json::exception& error) {
     throw Error(file, "", std::string("is not valid JSON: ") + error.what());
   }

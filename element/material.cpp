@@ -11,6 +11,13 @@ namespace grainlaw {
 namespace {
 // So wide that no product of them overflows.
 const Range positive = between(1e-15, 1e15), not_negative = between(0, 1e15);
+
+#include "grainlaw/element/contact_law-inl.hpp"
+
+/// Of two grains of radius r, ug.
+double reduced_mass(const Material& m, double r) {
+  return 0.5 * m.rho * 4.0 / 3.0 * std::numbers::pi * r * r * r;
+}
 }  // namespace
 
 double Material::damping_scale() const {
@@ -19,11 +26,7 @@ double Material::damping_scale() const {
 }
 
 double Material::contact_duration(double r) const {
-  const double reduced_mass = 0.5 * rho * 4.0 / 3.0 * std::numbers::pi * r * r * r;
-  const double damping = gamma / (2 * reduced_mass);
-  const double omega_squared = k / reduced_mass - damping * damping;
-  return omega_squared > 0 ? std::numbers::pi / std::sqrt(omega_squared)
-                           : std::numeric_limits<double>::infinity();
+  return ContactLaw::of(*this).duration(reduced_mass(*this, r));
 }
 
 Material Material::read(Reader reader) {
@@ -39,9 +42,8 @@ Material Material::read(Reader reader) {
   if (!std::isfinite(m.contact_duration(m.r_min())))
     reader.fail("gamma",
                 "overdamps the contact of the two smallest grains (no finite contact duration); must be < " +
-                    to_text(std::sqrt(4 * m.k * 0.5 * m.rho * 4.0 / 3.0 * std::numbers::pi *
-                                      std::pow(m.r_min(), 3))) +
-                    ", got " + to_text(m.gamma));
+                    to_text(ContactLaw::of(m).critical_damping(reduced_mass(m, m.r_min()))) + ", got " +
+                    to_text(m.gamma));
   return m;
 }
 

@@ -8,6 +8,9 @@ std::string version() { return build_info::version; }
 
 std::string commit() { return build_info::commit; }
 
-std::string build_options() { return build_info::build; }
+std::string build_options() {
+  const std::string changes = build_info::changes;
+  return GRAINLAW_BUILD_OPTIONS + (changes.empty() ? "" : ", changes " + changes);
+}
 
 }  // namespace grainlaw

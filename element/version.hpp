@@ -11,7 +11,8 @@ std::string version();
 /// without a git history.
 std::string commit();
 /// The options that the compiler was given, "Release -O3 -DNDEBUG"; with a hash of what had been changed
-/// since the commit, where git was there to see it. Two builds of one commit may round differently.
+/// in the sources since the commit, where git was there to see it. Two builds of one commit may round
+/// differently.
 std::string build_options();
 
 }  // namespace grainlaw

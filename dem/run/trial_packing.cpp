@@ -25,15 +25,19 @@ constexpr std::size_t whole_trial = 20'000, base_grains = 10'000;
 
 bool is_laid_out(std::size_t count) { return count > whole_trial; }
 
-State laid_out(const State& one, std::size_t times) {
+State laid_out(const State& one, std::size_t times) { return laid_out(one, {times, times, times}); }
+
+State laid_out(const State& one, const std::array<std::size_t, 3>& times) {
   State state = one;
   state.position.clear();
   state.velocity.clear();
   state.radius.clear();
-  state.box = static_cast<double>(times) * one.box;
-  for (std::size_t a = 0; a < times; ++a)
-    for (std::size_t b = 0; b < times; ++b)
-      for (std::size_t c = 0; c < times; ++c)
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t edge = 0; edge < 3; ++edge)
+      state.box(row, edge) = static_cast<double>(times[edge]) * one.box(row, edge);
+  for (std::size_t a = 0; a < times[0]; ++a)
+    for (std::size_t b = 0; b < times[1]; ++b)
+      for (std::size_t c = 0; c < times[2]; ++c)
         for (std::size_t i = 0; i < one.count(); ++i) {
           const Vec3& x = one.position[i];
           const Vec3 edges{static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)},

@@ -1,6 +1,7 @@
 // The packing of a scene, or one like it that is made in seconds: what steps and rows cost is measured in it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 
@@ -17,7 +18,9 @@ constexpr std::size_t largest_trial = 200'000;  ///< beyond, a grain costs the s
 /// Whether a trial packing of a scene of so many grains is made of copies of a smaller one.
 bool is_laid_out(std::size_t count);
 
-/// A packing beside itself, `times` along each edge of its box.
+/// A packing beside itself, so many times along each edge of its box.
+State laid_out(const State& one, const std::array<std::size_t, 3>& times);
+/// The same along all.
 State laid_out(const State& one, std::size_t times);
 
 /// The scene's own grains, or others like them, which are made and moved much faster than real ones: only

@@ -60,7 +60,7 @@ void push_apart(State& state) {
   neighbours.update(grains, cell, 0);
   Material soft;
   soft.k = 1;
-  const ContactLaw push = ContactLaw::of(soft).elastic();  // of linear contacts, the force is the overlap
+  const ContactLaw push = ContactLaw::of(soft).elastic();  // with k = 1, of the size of the overlap in mm
   for (int step = 0; any_overlap(grains, cell, neighbours.pairs()); ++step) {
     if (step == most_pushes)
       throw Error("the gas is too dense to place " + std::to_string(state.count()) +

@@ -46,17 +46,23 @@ StateRequest read_request(Reader& reader) {
 
 /// Some of the words that are known, in their order, which is that of their columns.
 std::vector<std::string> read_asked(Reader& reader, const char* key, const std::vector<std::string>& known,
-                                    const std::vector<std::string>& fallback, const HintOnWord& hint = {}) {
+                                    const std::vector<std::string>& fallback, const HintOnWord& hint) {
   std::vector<std::string> asked = read_words(reader, key, known, fallback, hint);
   const auto rank = [&](const std::string& name) { return std::find(known.begin(), known.end(), name); };
   std::sort(asked.begin(), asked.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   return asked;
 }
 
-/// A column is asked for by its group.
+/// Who asks for one column by its name in place of what brings it.
 std::string hint_on_column(const std::string& word) {
-  const std::string group = group_of_column(word);
-  return group.empty() ? "" : ", a column of " + group;
+  if (const std::string group = group_of_column(word); !group.empty())
+    return ", a column of " + group + " in measure.standard";
+  for (const std::string& name : observe::names()) {
+    const std::vector<std::string> columns = observe::columns({name});
+    if (std::find(columns.begin(), columns.end(), word) != columns.end())
+      return ", a column of " + name + " in measure.observe";
+  }
+  return "";
 }
 
 /// A DEM measures these at the start; only nu can be chosen.
@@ -234,7 +240,7 @@ Measure Measure::read(Reader reader, const Measure& fallback) {
   measure.time_step = read_step(reader, "time_step", fallback.time_step);
   measure.time_step_gas = read_step(reader, "time_step_gas", fallback.time_step_gas);
   measure.standard = read_asked(reader, "standard", column_groups(), fallback.standard, hint_on_column);
-  measure.observe = read_asked(reader, "observe", observe::names(), fallback.observe);
+  measure.observe = read_asked(reader, "observe", observe::names(), fallback.observe, hint_on_column);
   reader.finish();
   return measure;
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <numbers>
 #include <type_traits>
 #include <vector>
 
@@ -25,7 +27,7 @@ namespace grainlaw::dem::HWY_NAMESPACE {
 
 namespace of_vectors {
 using grainlaw::dem::root;  // of numbers; that of vectors is found by its argument
-#include "grainlaw/dem/step/contact_law-inl.hpp"
+#include "grainlaw/element/contact_law-inl.hpp"
 }  // namespace of_vectors
 
 static_assert(GroupedPairs::width % lanes == 0 && CrossingPairs::width % lanes == 0 &&

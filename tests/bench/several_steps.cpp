@@ -114,23 +114,6 @@ class Sweeps {
   std::size_t furthest_ = 0;  ///< runs from a grain to its partners
 };
 
-dem::State laid_out(const dem::State& one, const std::array<std::size_t, 3>& times) {
-  dem::State state = one;
-  state.position.clear(), state.velocity.clear(), state.radius.clear();
-  for (std::size_t c = 0; c < 3; ++c) state.box(c, c) *= static_cast<double>(times[c]);
-  for (std::size_t k = 0; k < times[0] * times[1] * times[2]; ++k) {
-    const std::array<std::size_t, 3> at{k % times[0], k / times[0] % times[1], k / times[0] / times[1]};
-    for (std::size_t i = 0; i < one.count(); ++i) {
-      auto x = one.position[i];
-      for (std::size_t c = 0; c < 3; ++c) x[c] += static_cast<double>(at[c]) * one.box(c, c);
-      state.position.push_back(x);
-      state.velocity.push_back(one.velocity[i]);
-      state.radius.push_back(one.radius[i]);
-    }
-  }
-  return state;
-}
-
 double largest_difference(const dem::Quads& a, const dem::Quads& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
@@ -142,7 +125,7 @@ double largest_difference(const dem::Quads& a, const dem::Quads& b) {
 }  // namespace
 
 int main(int words, char** word) {
-  const int turns = words > 1 ? std::atoi(word[1]) : 5;
+  const int turns = words > 1 ? std::max(1, std::atoi(word[1])) : 5;
   Material material;
   const dem::State one = dem::random_packing(material, 1000, 1, 0.75, 1e-6).state();
   const std::vector<std::array<std::size_t, 3>> boxes{{1, 1, 1},    {2, 2, 2},  {3, 3, 3},  {5, 5, 5},
@@ -150,9 +133,9 @@ int main(int words, char** word) {
   const std::vector<std::size_t> at_once{0, 1, 2, 4, 8};  // 0: step by step
   std::vector<std::unique_ptr<Sweeps>> packings;
   for (const auto& times : boxes)
-    packings.push_back(std::make_unique<Sweeps>(material, laid_out(one, times)));
+    packings.push_back(std::make_unique<Sweeps>(material, dem::laid_out(one, times)));
 
-  Sweeps by_steps(material, laid_out(one, {4, 2, 2})), swept = by_steps;
+  Sweeps by_steps(material, dem::laid_out(one, std::array<std::size_t, 3>{4, 2, 2})), swept = by_steps;
   const dem::Quads begin_places = by_steps.places();
   for (int k = 0; k < 8; ++k) by_steps.one_step();
   swept.sweep(8);

@@ -407,7 +407,11 @@ TEST(Scene, GroupsOfColumnsAreKeptInTheOrderOfTheirColumns) {
                                  "energy_ratio, got \"stres\"; did you mean stress?"));
   EXPECT_THAT(refused(R"(["fabric", "P"])"),
               testing::HasSubstr("measure.standard[1]: must be one of stress, fabric, coordination, "
-                                 "energy_ratio, got \"P\", a column of stress"));
+                                 "energy_ratio, got \"P\", a column of stress in measure.standard"));
+  EXPECT_THAT(refused(R"(["E_k"])"),
+              testing::HasSubstr("got \"E_k\", a column of energy in measure.observe"));
+  EXPECT_THAT(refusal(with("measure", R"({"observe": ["xi_x"]})")),
+              testing::HasSubstr("got \"xi_x\", a column of percolation in measure.observe"));
   EXPECT_THAT(refused(R"(["nu"])"), testing::HasSubstr("measure.standard[0]: must be one of stress, fabric"));
   EXPECT_THAT(refused(R"(["fabric", "stress", "fabric"])"),
               testing::HasSubstr("measure.standard[2]: is given twice, got fabric"));

@@ -92,7 +92,6 @@ TEST(Stage, RefusesEdgesThatHoldTheBoxNoMore) {
       testing::StartsWith("scene.json: path.segments[1]: tilts the box"));
 }
 
-/// F = (65, 8; 8, 1) makes the square lattice itself, too, but not before it was narrow.
 TEST(Stage, RefusesMoreStepsThanCanBeCounted) {
   const auto refusal_of = [](const std::string& rest) {
     const Scene scene = Scene::read(Reader(parse_json("{" + rest + "}", "s.json"), "s.json"), "");
@@ -117,6 +116,7 @@ TEST(Stage, RefusesMoreStepsThanCanBeCounted) {
   EXPECT_EQ(refusal_of(relax), "accepted");
 }
 
+/// F = (65, 8; 8, 1) makes the square lattice itself, too, but not before it was narrow.
 TEST(Stage, RefusesABoxThatIsNarrowOnlyOnItsWay) {
   const double t = 4 + std::sqrt(17.0), s = 2 * std::log(t);
   const std::string segment = components(stretch(s, t));

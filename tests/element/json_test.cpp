@@ -32,6 +32,9 @@ TEST(Json, SyntaxErrorNamesTheLine) {
             "a.json: line 1 is not valid JSON: a number must be finite, got nan");
   EXPECT_EQ(refusal([] { parse_json("{\n\"a\": 1,\n\"b\": -1e400}", "a.json"); }),
             "a.json: line 3: a number must be finite, got -1e400");
+  EXPECT_EQ(refusal([] { parse_json("{\"note\": \"was 1e400\",\n\n\"a\": 1e400}", "a.json"); }),
+            "a.json: line 3: a number must be finite, got 1e400");
+  EXPECT_LT(refusal([] { parse_json("[" + std::string(100000, '9') + "]", "a.json"); }).size(), 120u);
 }
 
 TEST(Json, KeyGivenTwiceIsRefused) {
