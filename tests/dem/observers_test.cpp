@@ -256,16 +256,22 @@ struct Met {
 
 std::vector<Met> contacts_of(const State& state) {
   std::vector<Met> list;
-  for (std::size_t i = 0; i < state.count(); ++i)
-    for (std::size_t j = i + 1; j < state.count(); ++j)
-      for (int n = 0; n < 125; ++n) {
-        const std::array<int, 3> image{n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2};
-        const Vec3 away = state.box * Vec3{1.0 * image[0], 1.0 * image[1], 1.0 * image[2]};
-        Vec3 branch;
-        for (std::size_t c = 0; c < 3; ++c) branch[c] = state.position[i][c] - state.position[j][c] - away[c];
+  const double furthest = 2 * *std::max_element(state.radius.begin(), state.radius.end());
+  for (int n = 0; n < 125; ++n) {
+    const std::array<int, 3> image{n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2};
+    const Vec3 away = state.box * Vec3{1.0 * image[0], 1.0 * image[1], 1.0 * image[2]};
+    for (std::size_t i = 0; i < state.count(); ++i) {
+      const auto& [x, y, z] = state.position[i];
+      for (std::size_t j = i + 1; j < state.count(); ++j) {
+        const auto& other = state.position[j];
+        const double dx = x - other[0] - away[0];
+        if (std::abs(dx) > furthest) continue;
+        const Vec3 branch{dx, y - other[1] - away[1], z - other[2] - away[2]};
         const double overlap = state.radius[i] + state.radius[j] - norm(branch);
         if (overlap >= 0) list.push_back({i, j, image, branch, overlap});
       }
+    }
+  }
   return list;
 }
 
