@@ -1,4 +1,4 @@
-// Observers against closed forms: crystals, chains through the box, gases; and what must not matter to them.
+// Observers against closed forms: crystals, pairs, gases; and what must not matter to them.
 #include "grainlaw/dem/observe/observers.hpp"
 
 #include <gmock/gmock.h>
@@ -8,47 +8,19 @@
 #include <map>
 #include <numeric>
 
-#include "grainlaw/dem/numbers/random.hpp"
+#include "observed.hpp"
 #include "packings.hpp"
 
 namespace grainlaw::dem {
 namespace {
 
 using observe::Observers;
+using test::contacts_of;
+using test::d2_signs;
+using test::elastic;
+using test::Met;
+using test::see;
 using testing::DoubleEq;
-
-Material elastic() {
-  Material m;
-  m.gamma = 0;
-  return m;
-}
-
-/// A path that shears in D2: x extends, y compresses.
-SignConvention d2_signs() {
-  Leg leg{};
-  leg.mode = Mode::d2;
-  leg.strain = {-0.1, 0.1, 0};
-  return SignConvention({leg});
-}
-
-/// What `observers` say of grains, by column; nothing is measured for them but what they say they read.
-std::map<std::string, double> see(Observers& observers, const Material& m, const Dynamics& dynamics) {
-  const auto values = observers.observe(dynamics, dynamics.velocities(), dynamics.measure(observers.reads()),
-                                        m, d2_signs(), 0, 0);
-  EXPECT_EQ(values.size(), observers.columns().size());
-  std::map<std::string, double> by_column;
-  for (std::size_t k = 0; k < values.size(); ++k) by_column[observers.columns()[k]] = values[k];
-  return by_column;
-}
-
-std::map<std::string, double> see(Observers& observers, const Material& m, const State& state) {
-  return see(observers, m, Dynamics(m, state));
-}
-
-std::map<std::string, double> see(const Material& m, const State& state) {
-  Observers all(observe::names());
-  return see(all, m, state);
-}
 
 Record table_of(const std::string& name, const Material& m, const State& state) {
   Observers observers({name});
@@ -144,223 +116,6 @@ TEST(Observers, RattlersAreLeftOutOfPartnersToo) {
   EXPECT_DOUBLE_EQ(seen.at("C_star_p"), 12);
   EXPECT_DOUBLE_EQ(seen.at("C_r"), (32.0 * 12 + 6) / 33);
   EXPECT_NEAR(seen.at("phi_r"), 1.0 / 33, 1e-15);
-}
-
-/// A state of unit grains: `strong` in a row from `begin` by `step`, overlapping by 0.1, and far away thirty
-/// pairs that hardly touch, so that the forces in the row are more than 2.2 times the mean.
-State row_of_grains(std::size_t strong, const Vec3& begin, const Vec3& step, const Mat3& box) {
-  State state;
-  state.box = box;
-  const auto put = [&](const Vec3& x) {
-    state.position.push_back(x);
-    state.velocity.push_back({});
-    state.radius.push_back(1);
-  };
-  for (std::size_t k = 0; k < strong; ++k) {
-    const auto n = static_cast<double>(k);
-    put({begin[0] + n * step[0], begin[1] + n * step[1], begin[2] + n * step[2]});
-  }
-  for (int a = 0; a < 5; ++a)
-    for (int b = 0; b < 6; ++b) {
-      put({2 + 3 * a + 0.0, 3 * b + 2.0, 20});
-      put({2 + 3 * a + 0.0, 3 * b + 2.0, 21.999});
-    }
-  return state;
-}
-
-State row_of_grains(std::size_t strong, const Vec3& begin, const Vec3& step, const Vec3& box) {
-  return row_of_grains(strong, begin, step, Mat3::diagonal(box));
-}
-
-using Directions = std::array<int, 3>;
-
-void expect_spans(const std::map<std::string, double>& seen, const Vec3& xi, const Directions& percolates) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::string axis(1, "xyz"[c]);
-    EXPECT_NEAR(seen.at("xi_" + axis), xi[c], 1e-12) << axis;
-    EXPECT_EQ(seen.at("percolates_" + axis), percolates[c]) << axis;
-  }
-  EXPECT_EQ(seen.at("percolating"), percolates[0] + percolates[1] + percolates[2]);
-}
-
-void expect_spans(const State& state, const Vec3& xi, const Directions& percolates) {
-  expect_spans(see(elastic(), state), xi, percolates);
-}
-
-TEST(Percolation, AStraightChainThroughTheBox) {
-  expect_spans(row_of_grains(10, {5, 5, 5}, {1.9, 0, 0}, {19, 19, 30}), {1, 0, 0}, {1, 0, 0});
-  // one grain is missing: nine in a row, through the face of the box
-  expect_spans(row_of_grains(9, {12, 5, 5}, {1.9, 0, 0}, {19, 19, 30}), {8 * 1.9 / 19, 0, 0}, {0, 0, 0});
-}
-
-TEST(Percolation, AlongEachAxis) {
-  expect_spans(row_of_grains(10, {5, 5, 5}, {0, 1.9, 0}, {19, 19, 30}), {0, 1, 0}, {0, 1, 0});
-  expect_spans(row_of_grains(15, {17.5, 9.5, 1}, {0, 0, -1.9}, {19, 19, 28.5}), {0, 0, 1}, {0, 0, 1});
-}
-
-TEST(Percolation, ADiagonalChainRunsAlongTwoAxes) {
-  const double step = 1.9 / std::sqrt(2.0);
-  expect_spans(row_of_grains(14, {1, 3, 5}, {step, step, 0}, {14 * step, 14 * step, 30}), {1, 1, 0},
-               {1, 1, 0});
-}
-
-TEST(Percolation, AChainLongerThanTheBoxThatMissesItselfDoesNotPercolate) {
-  // After a turn around x it has moved 3 along y.
-  const Vec3 step{1.8735, 0.3, 0.1};  // of length 1.9 or so
-  expect_spans(row_of_grains(14, {1, 3, 5}, step, {19, 19, 30}), {1, 13 * 0.3 / 19, 13 * 0.1 / 30},
-               {0, 0, 0});
-}
-
-/// A box of 19 x 19 x 30 after simple shear: x flows, y is the gradient.
-Mat3 sheared_box(double gamma) { return {{19, 19 * gamma, 0}, {0, 19, 0}, {0, 0, 30}}; }
-
-/// A row as long as so many edges of this box, without the last `missing` of the grains that close it.
-State row_along(const Vec3& edges, const Mat3& box, std::size_t missing = 0) {
-  const Vec3 way = box * edges;
-  const double grains = std::ceil(norm(way) / 1.92);
-  const Vec3 step{way[0] / grains, way[1] / grains, way[2] / grains};
-  return row_of_grains(static_cast<std::size_t>(grains) - missing, {9.5, 9.5, 5}, step, box);
-}
-
-// The cell counts images in edges that it chooses anew, in simple shear at gamma = 0.5, 1.5 ...
-TEST(Percolation, ARowThatShearsWithTheBoxPercolatesAsBefore) {
-  for (int n = -24; n <= 24; ++n) {
-    const double gamma = n / 20.0;
-    SCOPED_TRACE(gamma);
-    const Mat3 box = sheared_box(gamma);
-    expect_spans(row_along({1, 0, 0}, box), {1, 0, 0}, {1, 0, 0});
-    expect_spans(row_along({0, 1, 0}, box), {0, 1, 0}, {0, 1, 0});
-    expect_spans(row_along({0, 0, 1}, box), {0, 0, 1}, {0, 0, 1});
-    expect_spans(row_along({1, 1, 0}, box), {1, 1, 0}, {1, 1, 0});
-    const State open = row_along({0, 1, 0}, box, 1);
-    const double grains = static_cast<double>(open.count()) - 60;
-    expect_spans(open, {0, (grains - 1) / (grains + 1), 0}, {0, 0, 0});
-  }
-  EXPECT_EQ(Cell(sheared_box(0.45)).basis(), Mat3::identity());
-  EXPECT_NE(Cell(sheared_box(0.55)).basis(), Mat3::identity());
-}
-
-TEST(Percolation, StraightUpInABoxThatLeansIsAlongBothEdges) {
-  // Straight up is once along the second edge and once back along the first.
-  expect_spans(row_of_grains(10, {9.5, 9.5, 5}, {0, 1.9, 0}, sheared_box(1)), {1, 1, 0}, {1, 1, 0});
-  expect_spans(row_of_grains(10, {9.5, 9.5, 5}, {0, 1.9, 0}, sheared_box(0)), {0, 1, 0}, {0, 1, 0});
-}
-
-/// A contact, found by trying images up to two edges H away: of i with the image of j moved by `image`.
-struct Met {
-  std::size_t i, j;
-  std::array<int, 3> image;
-  Vec3 branch;
-  double overlap;
-};
-
-std::vector<Met> contacts_of(const State& state) {
-  std::vector<Met> list;
-  const double furthest = 2 * *std::max_element(state.radius.begin(), state.radius.end());
-  for (int n = 0; n < 125; ++n) {
-    const std::array<int, 3> image{n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2};
-    const Vec3 away = state.box * Vec3{1.0 * image[0], 1.0 * image[1], 1.0 * image[2]};
-    for (std::size_t i = 0; i < state.count(); ++i) {
-      const auto& [x, y, z] = state.position[i];
-      for (std::size_t j = i + 1; j < state.count(); ++j) {
-        const auto& other = state.position[j];
-        const double dx = x - other[0] - away[0];
-        if (std::abs(dx) > furthest) continue;
-        const Vec3 branch{dx, y - other[1] - away[1], z - other[2] - away[2]};
-        const double overlap = state.radius[i] + state.radius[j] - norm(branch);
-        if (overlap >= 0) list.push_back({i, j, image, branch, overlap});
-      }
-    }
-  }
-  return list;
-}
-
-/// Which edges H the largest cluster of strong contacts, without viscosity, percolates along: grains are
-/// given images until no contact wants another, and what contradicts them are the ways around.
-Directions directions_by_brute_force(const State& state) {
-  std::vector<Met> strong = contacts_of(state);
-  double mean = 0;
-  for (const Met& c : strong) mean += c.overlap / static_cast<double>(strong.size());
-  std::erase_if(strong, [&](const Met& c) { return c.overlap < 2.2 * mean; });
-  std::size_t largest = 0;
-  Directions result{};
-  std::vector<bool> seen(state.count(), false);
-  for (std::size_t first = 0; first < state.count(); ++first) {
-    if (seen[first]) continue;
-    std::map<std::size_t, std::array<int, 3>> place{{first, {}}};
-    Directions around{};
-    for (std::size_t before = 0; before != place.size();) {
-      before = place.size();
-      for (const Met& c : strong) {
-        std::array<int, 3> there;
-        const bool i = place.contains(c.i), j = place.contains(c.j);
-        for (std::size_t k = 0; k < 3; ++k) {
-          if (i) there[k] = place[c.i][k] + c.image[k];
-          if (!i && j) there[k] = place[c.j][k] - c.image[k];
-          if (i && j) around[k] |= there[k] != place[c.j][k] ? 1 : 0;
-        }
-        if (i != j) place[i ? c.j : c.i] = there;
-      }
-    }
-    for (const auto& [grain, image] : place) seen[grain] = true;
-    if (place.size() > largest) result = around;
-    largest = std::max(largest, place.size());
-  }
-  return result;
-}
-
-/// 125 places, 1.9 apart along x, y and z, in a box of which the second edge leans by `lean` of them: some
-/// hold a unit grain, so that neighbours overlap by 0.1, the others three tiny grains that hardly touch.
-State random_places(int lean, Random& random) {
-  const double apart = 1.9;
-  State state;
-  state.box = apart * Mat3{{5, 1.0 * lean, 0}, {0, 5, 0}, {0, 0, 5}};
-  for (int n = 0; n < 125; ++n) {
-    const bool large = random.uniform() < 0.35;
-    for (int k = 0; k < (large ? 1 : 3); ++k) {
-      const double along = n % 5 + n / 5 % 5 * lean / 5.0;  // of the first edge; may be beside a place
-      const double up = apart * (n / 25) + 0.0999 * k;
-      state.position.push_back({apart * std::floor(along), apart * (n / 5 % 5), up});
-      state.velocity.push_back({});
-      state.radius.push_back(large ? 1 : 0.05);
-    }
-  }
-  return state;
-}
-
-TEST(Percolation, OfRandomNetworksByBruteForce) {
-  std::map<Directions, int> met;
-  Random random(5);
-  for (int n = 0; n < 32; ++n) {
-    SCOPED_TRACE(n);
-    const State state = random_places(n % 8, random);  // gamma from 0 to 1.4
-    const auto seen = see(elastic(), state);
-    const Directions here{static_cast<int>(seen.at("percolates_x")),
-                          static_cast<int>(seen.at("percolates_y")),
-                          static_cast<int>(seen.at("percolates_z"))};
-    EXPECT_EQ(here, directions_by_brute_force(state));
-    ++met[here];
-  }
-  EXPECT_GE(met.size(), 5u);  // of the eight answers
-}
-
-// Lists are renewed, and the edges in which images are counted chosen anew, between rows of one path.
-TEST(Percolation, ARenewalOfListsChangesNothing) {
-  const Mat3 before = sheared_box(0.499), after = sheared_box(0.501);
-  const double dt = 0.02;
-  const Mat3 gradient{{0, 0.002 / dt, 0}, {0, 0, 0}, {0, 0, 0}};
-  for (const State& state : {row_along({0, 1, 0}, before), row_along({1, 1, 0}, before)}) {
-    Dynamics old(elastic(), state);
-    old.start_flow(dt, gradient);
-    old.step(after, gradient);
-    const Dynamics renewed(elastic(), old.state());
-    ASSERT_EQ(old.cell().basis(), Mat3::identity());
-    ASSERT_NE(renewed.cell().basis(), Mat3::identity());
-    Observers percolation({"percolation"});
-    const auto was = see(percolation, elastic(), old), is = see(percolation, elastic(), renewed);
-    for (const auto& [column, value] : was) EXPECT_NEAR(is.at(column), value, 1e-12) << column;
-    EXPECT_GT(was.at("percolating"), 0);
-  }
 }
 
 TEST(Observers, OneContactIsWhollyUnbalanced) {
@@ -592,12 +347,6 @@ TEST(Observers, NoneCostsNoColumn) {
   EXPECT_TRUE(observe::tables({}).empty());
   EXPECT_THAT(observe::columns({"nonaffine", "contacts"}),
               testing::ElementsAre("C_r", "C_star_p", "phi_r", "D2_min"));
-}
-
-TEST(Observers, RecordsOfAnEarlierVersionKnowPercolationByItsCountAlone) {
-  EXPECT_THAT(observe::lasting_columns({"percolation", "overlap"}),
-              testing::ElementsAre("overlap", "xi_x", "xi_y", "xi_z", "percolating"));
-  EXPECT_EQ(observe::lasting_columns({"contacts", "radius"}), observe::columns({"contacts", "radius"}));
 }
 
 }  // namespace
